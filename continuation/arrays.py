@@ -27,7 +27,7 @@ ROOT_OF_ROUND_OFF = float(np.sqrt(EPS))
 """Half of the digits."""
 
 SIX_DIGITS = 1e-6
-"""Six digits make a sign, rank, direction or refinement certain; others may be lost."""
+"""Accuracy that decides a sign, rank, direction or refinement; the other digits may be lost."""
 
 
 def finite(entries: Array) -> bool:
@@ -70,7 +70,7 @@ def generic_vector(n: int) -> Array:
 
 
 def asked_by_sparse() -> bool:
-    """Whether scipy's sparse product calls this `__array__`; an array of None leaves it to `__rmatmul__`."""
+    """Whether scipy's sparse product calls this `__array__`; an array of None makes it decline."""
     caller = sys._getframe(2)
     return caller.f_code.co_name == "_matmul_dispatch" and caller.f_globals["__name__"].startswith("scipy.sparse")
 

@@ -22,8 +22,7 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 TRIALS = 32
-"""Number of trial steps, each half of the last: an unknown that stands still along the path has no known size on the
-other branch."""
+"""Trial steps, each half of the last: the size of an unknown that stands still along the path is not known."""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""

@@ -14,21 +14,21 @@ from attrs import define, frozen
 from continuation.arrays import Array, dot
 
 HALVING = 0.5
-"""The last increment then bounds the error (Higham, Accuracy and Stability of Numerical Algorithms, Section 12.1;
-LAPACK's xGERFS)."""
+"""Ratio up to which the last increment bounds the error (Higham, Accuracy and Stability of Numerical Algorithms,
+Section 12.1; LAPACK's xGERFS)."""
 
 RELIABLE = 0.3
-"""Ratio for important decisions: determinant signs, series coefficients, landings."""
+"""Ratio for determinant signs, series coefficients, landings."""
 
 MONOTONE = 0.9
-"""Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), if checked afterwards."""
+"""Deuflhard's monotonicity test (Newton Methods for Nonlinear Problems, Section 2.1), if the result is checked."""
 
 
 @frozen
 class Contraction:
     """When an iteration gives up.
 
-    `iterations`: limit; twenty halvings are six digits. `ratio`: largest ratio of increments. `first`: largest first
+    `iterations`: limit; twenty halvings give six digits. `ratio`: largest ratio of increments. `first`: largest first
     ratio, if different. `noise`: smaller increments are round-off.
     """
 
@@ -94,11 +94,11 @@ class Iteration:
 
 
 def updated(increments: list[tuple[Array, Array]], z: Array, weights: Array) -> Array:
-    """A chord increment z after Broyden's good update, which all `increments` since the factorisation define.
+    """The chord increment z after Broyden's good update, which all `increments` since the factorisation define.
 
     It is appended to `increments`, with its dual; they are emptied first if they are round-off (Kelley, Iterative
-    Methods for Linear and Nonlinear Equations, Section 7.3). An update multiplies the determinant by `left`, so none
-    turns its sign.
+    Methods for Linear and Nonlinear Equations, Section 7.3). An update multiplies the determinant by `left`; none turns
+    its sign.
     """
     for (_, dual), (after, _) in pairwise(increments):
         z = z + dot(dual, z) * after

@@ -75,7 +75,7 @@ class SupportsTarget(Protocol):
 
 @runtime_checkable
 class SupportsBordered(Protocol):
-    """A factorisation of the homotopy's own for [[H_y, H_lam], [border]]."""
+    """The homotopy's own factorisation of [[H_y, H_lam], [border]]."""
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix.
@@ -144,7 +144,7 @@ class TangentPoint(Protocol):
 
 @runtime_checkable
 class SupportsTaylor(Protocol):
-    """Path coefficients of the homotopy's own."""
+    """The homotopy's own path coefficients."""
 
     def taylor(self, point: TangentPoint, order: int) -> Array:
         """Return c: u(s) = sum_k c[k] s^k, border . (u(s) - u(0)) = s.
@@ -192,14 +192,14 @@ class SupportsMetric(Protocol):
 
 @runtime_checkable
 class SupportsExtents(Protocol):
-    """A homotopy that knows sizes of unknowns and parameter, positive, shape (N + 1,), for those that stay zero."""
+    """Positive sizes of unknowns and parameter, shape (N + 1,), for those that stay zero."""
 
     extents: Array
 
 
 @runtime_checkable
 class SupportsBlocks(Protocol):
-    """Unknowns that sample one field share a scale of the default metric."""
+    """Unknowns that sample one field and share a scale of the default metric."""
 
     blocks: Sequence[int]
 
@@ -342,7 +342,7 @@ class SupportsPieces(Protocol):
 
 
 class SupportsBox(Protocol):
-    """Box for callers without target, events and box."""
+    """A box for callers without target, events and box."""
 
     box: Box
 

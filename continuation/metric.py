@@ -15,7 +15,7 @@ from continuation.arrays import Array, dot
 
 
 class Metric(Protocol):
-    """Weights of the inner product at a point."""
+    """Gives the weights of the inner product at a point."""
 
     def weights(self, u: Array, v: Array, current: Array | None) -> Array:
         """Return positive weights, shape (N + 1,).
@@ -56,7 +56,7 @@ class Euclidean:
 
 @frozen
 class Weighted:
-    """Given weights of y (one, or one a component) and of the parameter."""
+    """Given weights, one or one each for y, and one for the parameter."""
 
     y: float | Array = 1.0
     lam: float = field(default=1.0, validator=POSITIVE_FINITE)
@@ -109,10 +109,14 @@ class Automatic:
         Weight of the parameter. Between 0.1 and 0.3 factorisations on twelve problems differ by less than a tenth.
     blocks : ndarray of int, shape (N,), optional
         Labels; a label's unknowns get its largest scale.
+    before : ndarray, shape (N + 1,), optional
+        On a branch: the weights where it leaves another, whose scales bound its own from below. Otherwise those of
+        components that stand still would shrink from branch to branch.
     """
 
     share: float = field(default=0.2, validator=FRACTION)
     blocks: NDArray[np.int64] | None = field(default=None, eq=False, kw_only=True)
+    before: Array | None = field(default=None, eq=False, kw_only=True)
 
     @property
     def longest(self) -> float:
@@ -141,7 +145,7 @@ class Automatic:
         last = self.share * weights.item(-1)
         dscal((1.0 - self.share) / (extent.size - 1), weights)
         weights[-1] = last
-        return weights
+        return weights if self.before is None else np.minimum(weights, self.before / OF_BEFORE**2)
 
     def grown(self, current: Array, origin: Array, u: Array) -> Array:
         """Return the weights at `u`.
@@ -153,35 +157,12 @@ class Automatic:
         return np.minimum(current, self.of_extent(np.maximum(np.abs(u - origin), INVERTIBLE)))
 
 
-@frozen(eq=False, kw_only=True)
-class Inherited(Automatic):
-    """`Automatic` for a branch, with scales bounded below by its trunk's.
-
-    Otherwise scales of components that stand still shrink from branch to branch.
-
-    Parameters
-    ----------
-    before : ndarray, shape (N + 1,)
-        Weights where it leaves.
-    part : float
-        Of the old scale. On four successive pitchforks 0.01 starts the third a thousandth as far away as the first.
-    """
-
-    before: Array
-    part: float = field(default=0.1, validator=FRACTION)
-
-    def of_extent(self, extent: Array) -> Array:
-        """As of `Automatic`, bounded.
-
-        Parameters
-        ----------
-        extent : ndarray, shape (N + 1,)
-        """
-        return np.minimum(Automatic.of_extent(self, extent), self.before / self.part**2)
-
+OF_BEFORE = 0.1
+"""Least scale on a branch, over the scale before: on four successive pitchforks 0.01 starts the third a thousandth as
+far away as the first."""
 
 INVERTIBLE = 1e-150
-"""Least distance whose square has an inverse."""
+"""Least distance whose square has a finite inverse."""
 
 
 @runtime_checkable

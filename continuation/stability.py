@@ -28,17 +28,17 @@ from continuation.point.projection import PathSolver
 from continuation.status import Kind
 
 SMALL, ARC_QUARTERS = 31, (0.25, 0.5, 0.75)
-"""Up to 30 unknowns arcs are sampled inside: a pair may cross, become real, and one return through a turning point
+"""Up to 30 unknowns arcs are sampled inside: a pair may cross, become real, and return through a turning point
 (MatCont's catalyst)."""
 
 EVENT_MARGIN = 0.02
-"""Distance of events, in arc lengths, that may change an interval's count."""
+"""Distance, in arc lengths, of events that may change an interval's count."""
 
 CROSSING = {Kind.HOPF: 2, Kind.TURNING_POINT: 1, Kind.BRANCH_POINT: 1, Kind.SINGULAR_POINT: 4}
 """Largest number of eigenvalues crossing at an event."""
 
 SPECTRA_KEPT = 12
-"""Enough for an arc and an event."""
+"""Spectra kept: enough for an arc and an event."""
 
 
 @frozen

@@ -12,7 +12,7 @@ from continuation.arrays import Array
 from continuation.metric import norm
 
 LEAST_TOLERANCE = sys.float_info.epsilon**2
-"""Fraction of the path: the error after an increment at round-off."""
+"""Fraction of the path: the error that an increment of round-off leaves."""
 
 
 @frozen

@@ -1,7 +1,4 @@
-"""Ways to trace: one way, both ways, in unknowns that are renewed along the path; and to solve at one parameter.
-
-All make a `Tracer` of checked options; what differs is where paths start and how they are put together.
-"""
+"""Ways to trace: one way, both ways, in unknowns that are renewed along the path; and to solve at one parameter."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from continuation.budget import Budget
 from continuation.linear.silence import without_warnings
 
 quiet = without_warnings(over="ignore", invalid="ignore")
-"""Decorator: overflow gives inf or nan without warnings; the tracer handles them."""
+"""Decorator: overflow gives inf or nan without warnings."""
 
 
 positive_integer = integer(1)

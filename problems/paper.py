@@ -275,4 +275,4 @@ COUNTEREXAMPLES: tuple[Counterexample, ...] = (
         "w = (1, 0), where x_0 w_0 = 2; the proof takes W_q + X_q (A')_qq for a principal minor of A.",
     ),
 )
-"""Their KKT paths end at stationary points."""
+"""Problems whose KKT paths end at stationary points."""

@@ -40,7 +40,7 @@ class Row:
 
     @property
     def residual(self) -> float:
-        """Its natural residual."""
+        """The natural residual of x."""
         return certify(self.example.problem, self.x).residual
 
     @property

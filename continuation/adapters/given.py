@@ -20,7 +20,7 @@ from continuation.evaluation.pattern import Pattern
 class Adapted(FunctionHomotopy):
     """A homotopy by another library; see `from_jax`, `from_casadi` and `from_sympy`.
 
-    `more`: further methods by name. `again`: a function and arguments that rebuild it, for pickling.
+    `more`: further methods by name. `again`: a function and arguments that rebuild it from a pickle.
     """
 
     more: Mapping[str, Any] = field(kw_only=True)

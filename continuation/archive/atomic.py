@@ -33,7 +33,7 @@ class ArchiveExistsError(ArchiveError, FileExistsError):
 
 @contextmanager
 def beside(target: File) -> Iterator[File]:
-    """A new name beside `target`, removed in the end."""
+    """A new name beside `target`; the file is removed in the end."""
     part = target.with_name(f".{target.name}.{secrets.token_hex(4)}.part")
     try:
         yield part
@@ -47,7 +47,7 @@ def beside(target: File) -> Iterator[File]:
 
 
 def publish(part: File, target: File, *, replace: bool = False) -> None:
-    """Rename a complete file that the disk then has; `replace` keeps the old file's mode.
+    """Rename a complete file, once it is on disk; `replace` keeps the old file's mode.
 
     Raises `ArchiveExistsError` if the name is taken.
     """
@@ -98,7 +98,7 @@ def check_new(file: File) -> File:
 
 
 def exists(file: File) -> ArchiveExistsError:
-    """The error for an existing file."""
+    """The error for a file that exists."""
     return ArchiveExistsError(f"{file}: exists already, and is never overwritten; choose another name or remove it")
 
 
@@ -111,8 +111,7 @@ def short(error: BaseException) -> str:
     return (error.strerror if isinstance(error, OSError) and error.strerror else text)[:200]
 
 
-# HDF5 uses flock, and POSIX locks end when the process closes any descriptor: Linux's open file description locks
-# remain.
+# HDF5 uses flock, and POSIX locks end when any descriptor is closed: this leaves open file description locks.
 _WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
 _TAKEN = (errno.EAGAIN, errno.EACCES)
 
@@ -155,7 +154,7 @@ def is_held(file: File) -> bool:
 
 
 def own(file: File, descriptor: int) -> Lock:
-    """Lock a file, read as `descriptor`, to replace it.
+    """Lock a file, open as `descriptor`, to replace it.
 
     Raises `ArchiveError` if the file is not writable, being written, or replaced.
     """

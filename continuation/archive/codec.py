@@ -1,7 +1,7 @@
 """Objects as JSON: attrs classes by class path and fields; and objects from JSON, of trusted classes only.
 
-Trusted are this library's parts, homotopy classes that packages register (entry points `continuation.homotopies`),
-classes in annotations of their fields, and the caller's `trust`; functions need the latter.
+Trusted are the library's parts, homotopies that packages register (entry points `continuation.homotopies`), classes in
+annotations of their fields, and the caller's `trust`, which functions need.
 """
 
 from __future__ import annotations
@@ -32,7 +32,6 @@ def problem_data(homotopy: Any) -> tuple[str, dict[str, Any]]:
     names: dict[int, str] = {}
 
     def place(name: str, array: Any) -> str:
-        # An array that occurs twice is stored once.
         if id(array) not in names:
             names[id(array)] = name if name not in arrays else f"{name}_{len(arrays)}"
             arrays[names[id(array)]] = array
@@ -50,7 +49,7 @@ def described(value: Any, place: Place) -> Any:
 
 
 Place = Callable[[str, Any], Any]
-"""JSON in place of an array, from name and array."""
+"""Stores an array by name; returns JSON in its place."""
 
 
 @runtime_checkable
@@ -188,10 +187,10 @@ def class_path(cls: type) -> str:
 
 
 def decode(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any] | None = None, hint: Any = Any) -> Any:
-    """The value described by `continuation.archive.codec.encode`.
+    """The value described by `encode`.
 
     `fetch`: from what `place` returned to the array. `known`: the `registry`. `hint`: the expected type, whose classes
-    may be made. Raises `UnknownError` if a class is not trusted or a value has another type.
+    are trusted. Raises `UnknownError` if a class is not trusted or a value has another type.
     """
     try:
         return _decode(tree, fetch, known or {}, hint, "")
@@ -246,7 +245,7 @@ def _object(tree: Any, fetch: Callable[[Any], Any], known: Mapping[str, Any], hi
     fields = {key: _decode(item, fetch, known, kinds[key], f"{path}: {key} ") for key, item in tree["fields"].items()}
     if not hasattr(cls, "__attrs_init__"):
         return cls(**fields)
-    # Skips the constructor: the fields are complete.
+    # The fields are complete: no constructor.
     made: Any = object.__new__(cls)
     made.__attrs_init__(**fields)
     return made

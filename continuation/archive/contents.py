@@ -1,4 +1,4 @@
-"""The open file, read in pieces and checked."""
+"""An open file, read in pieces and checked."""
 
 from __future__ import annotations
 
@@ -42,6 +42,7 @@ from continuation.archive.schema import (
     PARAMETER,
     RESUME,
     SCHEMA,
+    TABLES,
     Column,
     Layout,
     check_names,
@@ -51,12 +52,10 @@ Array = np.ndarray[Any, Any]
 _T = TypeVar("_T")
 
 FAULTS = (OSError, RuntimeError, LookupError, ValueError, TypeError, AttributeError, MemoryError, ArithmeticError)
-"""Exceptions of h5py and of a damaged file's contents."""
+"""Exceptions by h5py for a damaged file."""
 
 WRITER_SECONDS, _PAUSE = 2.0, 0.02
 """Seconds during which a live writer's file may seem damaged, and between retries."""
-
-TABLES = ("point", "path")
 
 Problem = tuple[str, Mapping[str, Any]]
 """JSON and arrays."""
@@ -65,8 +64,8 @@ Problem = tuple[str, Mapping[str, Any]]
 class Contents:
     """An open file; any fault raises `ArchiveError`.
 
-    `limit`: bytes of memory. `salvage`: accept damage outside rows. `flaws`: accepted damage. `stated`: what was
-    committed, `committed`: what of it has checksums.
+    `limit`: bytes of memory. `salvage`: accept damage outside rows. `flaws`: accepted damage. `stated`: the last
+    commit, `committed`: what of it has checksums.
     """
 
     root: Any = None
@@ -93,7 +92,7 @@ class Contents:
         self.root = self._image = None
 
     def guarded(self, read: Callable[[], _T]) -> _T:
-        """The result of `read`, retried under a live writer; faults become `ArchiveError`."""
+        """The result of `read`, retried while a writer lives; faults become `ArchiveError`."""
         if self.closed:
             raise ArchiveError(f"{self.file}: the archive was closed; open it again to read more of it")
         end = time.monotonic() + WRITER_SECONDS
@@ -103,7 +102,6 @@ class Contents:
                     self._open()
                 return read()
             except FAULTS as error:
-                # Whoever salvages holds the file: nobody writes it.
                 if self._salvage or self.closed_by_writer or time.monotonic() > end or not is_held(self.file):
                     raise self.damaged(error) from error
             self._release()
@@ -121,7 +119,7 @@ class Contents:
         return ArchiveError(f"{self.file}: truncated or damaged, {short(error)}{hint}")
 
     def _or_else(self, what: str, read: Callable[[], _T], lost: _T) -> _T:
-        """The result of `read`, or `lost` if salvaging and the disk works."""
+        """The result of `read`; `lost` for damage if salvaging."""
         try:
             return read()
         except FAULTS as error:
@@ -150,7 +148,7 @@ class Contents:
         unknowns, cells = (int(found.shape[1]) for found in self._datasets.values())
         self.layout = Layout(unknowns, cells, _known(self._present))
         for table in TABLES:
-            self.allowance.take(f"a row of {table}s", self.layout.row_bytes(table))
+            self.allowance.take(f"a row of {table}s", self.layout.row_bytes[table])
         records = dataset(file, f"{GROUP}/{RECORDS}", np.dtype("u1"), (2 * PLACES, RECORD.size), self.allowance)
         self.committed = self.stated = latest(records[()])
         if self._salvage:
@@ -184,7 +182,7 @@ class Contents:
             ledger = Ledger(sums, [column.name for column in columns], rows)
             if ledger.rows != rows:
                 self._flaw(f"the checksums are damaged: those of {rows - ledger.rows} {table}s are missing")
-            self.allowance.take(f"the table of {table}s", ledger.rows * self.layout.row_bytes(table))
+            self.allowance.take(f"the table of {table}s", ledger.rows * self.layout.row_bytes[table])
             self._ledgers[table] = ledger
         return self._ledgers[table]
 
@@ -228,7 +226,7 @@ class Contents:
         return values
 
     def sound(self, name: str) -> Array:
-        """Which rows of a table can be read, and are what was written."""
+        """Which rows of a table have their checksums."""
         table, edges = self.table(name), self._ledger(name).bounds.tolist()
         nothing: dict[str, Array] = {}
         sound = np.zeros(edges[-1], dtype=bool)
@@ -276,7 +274,6 @@ def _check_schema(name: File, attributes: Any, present: set[str]) -> None:
 
 
 def _known(present: set[str]) -> frozenset[str]:
-    """The optional columns."""
     own = {name for name in present if name.startswith((OBSERVED, PARAMETER))}
     check_names("column", [name.partition("_")[2] for name in sorted(own)])
     return frozenset(own | (LATER & present))

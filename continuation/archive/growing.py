@@ -1,6 +1,6 @@
-"""Whole blocks of rows, read here and appended there: all that copies, merges, sweeps, saves or goes on does this.
+"""Whole blocks of rows, read from one store and appended to another: copies, merges, sweeps and resuming do only this.
 
-A `Share` is some paths and their points, in memory or in an open file. A store grows by shares.
+A `Share` is some paths and their points, in memory or in an open file.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ from continuation.status import Status
 class Share:
     """Some paths and their points.
 
-    `points`, `rows`: a point table and their rows in it. `names`: event names. `first`: first number in `path_index`.
+    `points`, `rows`: a point table and their rows in it. `names`: of events. `first`: first number in `path_index`.
     `origin`: the open file.
     """
 
@@ -99,10 +99,9 @@ def leading(shares: Sequence[Share]) -> Contents:
 
 
 def grow(store: Store, shares: Sequence[Share], *, file: str = "", checkpoint: bytes | None = None) -> int:
-    """Append shares; returns the number of the first path.
+    """Append shares; returns the number of the first path. The last commit adds the paths and the checkpoint.
 
-    The last commit adds the paths and the checkpoint. New paths are of `file`, and one commit, so that a kill leaves
-    none in part; copied ones keep their source.
+    New paths belong to `file` and are one commit, whole or absent after a kill; copied ones keep their source.
     """
     first = path = store.committed.paths
     points, rows, held = list[Block](), list[Block](), 0
@@ -207,7 +206,7 @@ def save_all(many: Sequence[Path], file: str | PathLike[str], title: str = "") -
 
 
 def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
-    """Raise `ValueError` unless the homotopy's largest residual at u is the stored one."""
+    """Raise `ValueError` unless the homotopy's residual norm at u is the stored one."""
     unknowns = Evaluator(homotopy, Counts()).start().size - 1
     if unknowns != u.size - 1:
         raise ValueError(f"homotopy: expected {u.size - 1} unknowns, as in the archive, found {unknowns}")
@@ -229,7 +228,7 @@ class Growing:
     _store: Store | None = None
 
     def held(self, homotopy: Any) -> Iterator[tuple[Path, Path]]:
-        """The paths of an existing file, whole and as kept; a growing copy then replaces it."""
+        """Yield the paths of an existing file, whole and as kept; a growing copy then replaces the file."""
         if not self.file.exists():
             return
         target = File(os.path.realpath(self.file))
@@ -241,7 +240,7 @@ class Growing:
                 last = source[-1].endpoint
                 check_homotopy(homotopy, last.u, last.residual_norm)
             for number, path in enumerate(source):
-                # A view would keep the whole array in memory.
+                # A view would keep the whole array.
                 yield path, path if self.keep == "all" else deepcopy(self._kept(path, number))
             self._store = copy([share_of(source)], target, what="went on", more=process(), replace=True, grows=True)
 

@@ -2,9 +2,9 @@
 
 HDF5 itself hangs at FIFOs and at checksums that SWMR omits. Links, external storage and foreign filters are refused.
 
-A block is one commit's rows. Its row in ``/checks`` holds its end and a checksum for each column, by name. A commit
-writes two records, *intent* and *commit*, each alternating between two places. A kill tears at most one; the other
-three determine it.
+A block is one commit's rows. Its row in ``/checks`` holds its end and a checksum of each column. A commit writes two
+records, *intent* and *commit*, each in two alternating places. A kill damages at most one record; the other three
+determine it.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Array = np.ndarray[Any, Any]
 GROUP = "checks"
 RECORDS = "commits"
 PLACES = 2
-"""Places that are written in turn, of records and of checkpoints."""
+"""Alternating places of records and checkpoints."""
 
 RECORD = struct.Struct("<7QI")
 """A `Committed` with its CRC-32."""
@@ -39,16 +39,16 @@ RECORD = struct.Struct("<7QI")
 _BOUNDS = struct.Struct("<QQ")
 
 _LARGE = 1 << 16
-"""Bytes from which a matrix is checked by sums of rows and columns: CRC-32 runs at 2.7 GB/s, sums at 40 GB/s."""
+"""Bytes from which the checksum is that of row and column sums: CRC-32 runs at 2.7 GB/s, sums at 40 GB/s."""
 
 
 class DamageError(ValueError):
-    """Data that differ from those written."""
+    """Data differ from those written."""
 
 
 @frozen
 class Committed:
-    """The valid part of a file."""
+    """What a file holds after a commit: numbers of rows, of blocks and of event names, and the last checkpoint."""
 
     sequence: int = 0
     points: int = 0
@@ -59,7 +59,7 @@ class Committed:
     checkpoint: int = 0
 
     def rows(self, table: str) -> int:
-        """Valid rows of ``"point"`` or ``"path"``."""
+        """Rows of ``"point"`` or ``"path"``."""
         return self.points if table == "point" else self.paths
 
     def pack(self) -> Array:
@@ -89,7 +89,7 @@ def latest(records: Array) -> Committed:
 
 
 def digest(values: Any, seed: int = 0) -> int:
-    """CRC-32, for large matrices of row and column sums."""
+    """CRC-32 of an array, or of the row and column sums of a large matrix."""
     whole: Any = np.ascontiguousarray(values)
     if whole.ndim == 2 and whole.nbytes >= _LARGE and whole.itemsize == 8:
         words = whole.view("u8")
@@ -98,7 +98,7 @@ def digest(values: Any, seed: int = 0) -> int:
 
 
 def seal(block: Mapping[str, Array], start: int) -> Array:
-    """The checksum row of a block from row `start`."""
+    """The checksums of a block that begins at row `start`."""
     stop = start + len(next(iter(block.values())))
     seed = zlib.crc32(_BOUNDS.pack(start, stop))
     sums = [digest(block[name], seed) for name in sorted(block)]
@@ -106,7 +106,7 @@ def seal(block: Mapping[str, Array], start: int) -> Array:
 
 
 class Ledger:
-    """Checksums of a table of `rows` rows, by block, as far as the blocks make sense."""
+    """Checksums of a table's first `rows` rows by block, up to the first impossible one."""
 
     def __init__(self, sums: Array, columns: Sequence[str], rows: int) -> None:
         bounds = np.concatenate(([0], np.ascontiguousarray(sums[:, :2]).view("<i8").ravel()))
@@ -144,15 +144,13 @@ def of_attributes(attributes: Mapping[str, Any]) -> int:
 
 
 PROBLEM = "problem"
-"""The group of the homotopy's arrays."""
-
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _SUPERBLOCK = struct.Struct("<8s4B4QI")
 """Signature, version (2 or 3), two sizes, a writer's flags, base, extension, length, root, checksum."""
 
 
 class Image:
-    """A file opened for reading, as if closed by its writer.
+    """A file opened for reading, as if its writer had closed it.
 
     `missing`: bytes cut off, read as zeros. `failure`: the disk's error. Raises `ArchiveError` unless it is a readable
     HDF5 file.
@@ -174,7 +172,7 @@ class Image:
             raise ArchiveError(f"{file}: {said}") from None
 
     def _closed(self, head: bytes) -> bytes:
-        """The head as its writer would have closed it."""
+        """The superblock as its writer would have left it."""
         if not head.startswith(SIGNATURE):
             said = "is not an HDF5 file, so not an archive" if head else "is empty; its writer ended before it wrote"
             raise StructureError(said)
@@ -221,7 +219,7 @@ class Image:
 
 
 def _check_heap(heap: bytes) -> None:
-    """Raise `OSError` unless objects fill the global heap: HDF5 loops forever in a heap of zeros."""
+    """Raise `OSError` unless objects fill the global heap: HDF5 never ends in a heap of zeros."""
     (size,) = struct.unpack_from("<Q", heap, 8)
     at = 16
     while size <= len(heap) and size - at >= 16:
@@ -253,23 +251,23 @@ def _turned(x: int, k: int) -> int:
 
 
 LEAST_BYTES = 1 << 27
-"""Bytes that any file may take: copying takes three times as much; half would refuse a compressed path of 50,000
+"""Bytes of memory for any file: copying takes three times its size; half would refuse a compressed path of 50,000
 points."""
 
 UNFOLDING = 32
-"""Memory of a larger file, relative to its size: a point of two unknowns takes 120 bytes, its `Step` 1.5 KiB, twice
-that if compressed; gzip shrinks zeros to a thousandth."""
+"""Memory over size of a larger file: a point of two unknowns takes 120 bytes, its `Step` 1.5 KiB, twice that if
+compressed; gzip shrinks zeros to a thousandth."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
 """h5py's own filters; others would load a library."""
 
 
 class StructureError(ValueError):
-    """Something that no archive contains."""
+    """The file holds something that no archive contains."""
 
 
 class LimitError(StructureError):
-    """A file that needs more memory than its limit."""
+    """The file needs more memory than its limit."""
 
 
 class Allowance:
@@ -284,7 +282,7 @@ class Allowance:
         self._total = 0
 
     def take(self, what: str, claimed: int) -> None:
-        """Count memory, a repeated item once."""
+        """Count memory; a repeated item counts once."""
         total = self._total - self._taken.get(what, 0) + claimed
         if total > self.limit:
             raise LimitError(f"{what} claims {claimed} bytes, all of it more than the limit of {self.limit}")
@@ -320,7 +318,7 @@ def dataset(
 ) -> Any:
     """A checked dataset; `rows` rows (default: all) count in the allowance.
 
-    `kind` None admits any numbers, a length None any length.
+    A `kind` None admits any numbers, a length None any length.
     """
     found = member(group, name)
     if not isinstance(found, h5py.Dataset):
@@ -356,7 +354,7 @@ def dataset(
 
 
 def order(array: Any) -> str:
-    """Memory order, "F" or "C": it decides BLAS's round-off."""
+    """Memory order, "F" or "C", which decides BLAS's round-off."""
     return "F" if array.flags.f_contiguous and not array.flags.c_contiguous else "C"
 
 

@@ -1,4 +1,4 @@
-"""What ran: the root attributes of an archive, and the stepper's state as bytes, to resume from."""
+"""Provenance: an archive's root attributes, and checkpoints with all that a path needs to go on."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def history(attributes: Mapping[str, Any], what: str) -> dict[str, str]:
 
 @lru_cache
 def software() -> dict[str, str]:
-    """Versions; BLAS and threads decide the last bits."""
+    """Versions, BLAS and threads: they decide the last bits."""
     blas = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
     given = [f"{os.environ[name]} ({name})" for name in _THREADS if name in os.environ]
     return {
@@ -146,7 +146,7 @@ def root_attributes(tracer: Tracer | None, title: str, made_with: Mapping[str, A
 
 
 HEAD = struct.Struct("<QQI")
-"""Sequence, length and CRC-32 of the body."""
+"""Sequence number, length and CRC-32 of the body."""
 
 OPTIONS = tuple(attrs.fields_dict(Settings))
 """The options of `continuation.Tracer` that determine a path."""
@@ -156,7 +156,7 @@ _INLINE_BYTES = 1 << 16
 
 @frozen(eq=False)
 class Checkpoint:
-    """A point after `rows` rows, from which a path continues exactly.
+    """A point after `rows` rows from which a path continues exactly.
 
     `counts`, `seconds`: work so far. `run`: options and homotopy.
     """
@@ -171,7 +171,7 @@ class Checkpoint:
 
 
 def major(version: str) -> str:
-    """Part of a version that resumable paths share: "2" of 2.3.1, "0.2" of 0.2.5."""
+    """The part of a version that files to resume share: "2" of 2.3.1, "0.2" of 0.2.5."""
     first, second, *_ = (*version.split("."), "")
     return first if first != "0" else f"0.{second}"
 
@@ -180,7 +180,6 @@ def _fetched(raw: bytes) -> Callable[[Any], Any]:
     made: list[np.ndarray[Any, Any]] = []
 
     def fetch(place: Any) -> Any:
-        # Numbers follow the description's order.
         if place["number"] == len(made):
             begin = sum(array.nbytes for array in made)
             made.append(numbers(raw[begin:], place["dtype"], place["shape"]).copy())
@@ -250,10 +249,7 @@ def pack(checkpoint: Checkpoint) -> bytes:
 
 
 def unpack(raw: bytes) -> Checkpoint | None:
-    """The checkpoint; None if missing, torn or of another major version of the library.
-
-    No class that the bytes name is imported.
-    """
+    """The checkpoint; None if missing, torn or of another major version. No class that the bytes name is imported."""
     try:
         sequence, length, crc = HEAD.unpack_from(raw)
         body = raw[HEAD.size : HEAD.size + length]

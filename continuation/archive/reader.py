@@ -55,12 +55,11 @@ class Archive(Sequence[Path]):
     def __init__(self, contents: Contents) -> None:
         self.contents = contents
         self.file, self.layout, self.closed_by_writer = contents.file, contents.layout, contents.closed_by_writer
-        # A snapshot; the growing file may be opened anew.
         self.points, self._ended = contents.table("point"), contents.table("path")
 
     @property
     def attributes(self) -> dict[str, Any]:
-        """Origin of the file."""
+        """Root attributes: the file's origin."""
         return self.contents.attributes
 
     @property
@@ -74,7 +73,6 @@ class Archive(Sequence[Path]):
         if len(self) == self._ended.size:
             return self._ended
         number, rows = self._ended.size, self.rows(self._ended.size)
-        # What it has cost is told at its end.
         row = {**record_of(Path(), None, ()), **dict.fromkeys(COUNT_NAMES.values(), -1), "wall_time": math.nan}
         row = row_columns({**row, "path": number, "member": number, "n_points": rows.stop - rows.start}, self.layout)
         columns = {name: np.concatenate((self._ended[name], row[name])) for name in self._ended}
@@ -82,7 +80,6 @@ class Archive(Sequence[Path]):
 
     @cached_property
     def _first_rows(self) -> Any:
-        """First row of each path, and the number of rows."""
         lengths = self._ended["n_points"]
         first = np.concatenate(([0], np.cumsum(lengths))).astype(int)
         if self.points.size < first[-1] or np.any(lengths < 0):
@@ -93,7 +90,6 @@ class Archive(Sequence[Path]):
         return len(self._first_rows) - 1
 
     def __getitem__(self, index: Any) -> Any:
-        """A path, or the list of a slice."""
         if isinstance(index, slice):
             return [self.path(i) for i in range(*index.indices(len(self)))]
         return self.path(index)
@@ -234,7 +230,7 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
 
 
 class StoredSteps(Sequence[Step]):
-    """Steps of a path: the ends, and those not yet committed, are held in memory; the others are in the file.
+    """Steps of a path: the ends and the uncommitted ones are in memory, the others in the file.
 
     Segments need stored tangents.
     """
@@ -275,7 +271,6 @@ class StoredSteps(Sequence[Step]):
         fields = {"u": ("y", "parameter"), "arclength": ("arclength",)}.get(name)
         if fields is None or len(self._held) == self._count:
             return np.array([getattr(step, name) for step in self])
-        # The first step, and those from `begin` on, are held.
         begin = self._count - len(self._held) + 1
         with open_archive(self._file) as archive:
             # Making steps takes 14 times as long.
@@ -287,7 +282,7 @@ class StoredSteps(Sequence[Step]):
 
 
 def _window(archive: Archive, path: int, first: int, stop: int) -> tuple[list[Step], list[LocatedEvent]]:
-    """Steps from `first` to `stop` - 1, read with the step before, to which a segment leads; events in their rows."""
+    """Steps from `first` to `stop` - 1 with their events, read with the step before, where the first segment begins."""
     rows, before = archive.rows(path), max(first - 1, 0)
     accepted = np.append(np.flatnonzero(archive.points.some("role", rows) == ACCEPTED), rows.stop - rows.start)
     start, begin, end = (rows.start + int(accepted[min(k, len(accepted) - 1)]) for k in (before, first, stop))

@@ -121,7 +121,7 @@ def resume(
         tracer.path.steps, tracer.path.events[:] = before.steps, before.events
         tracer.observers = (log, *observers)
         steps = iter(tracer)
-        # The counts discard the resumed tracer's extra factorisation.
+        # A resumed tracer's extra factorisation is not counted.
         next(steps)
         for counter, count in checkpoint.counts.items():
             setattr(tracer.counts, counter, count)
@@ -268,7 +268,7 @@ def _check(columns: dict[str, Any]) -> None:
             or not np.isfinite(values).all()
         ):
             raise StructureError(f"{name} is of another shape, or holds numbers that are not finite")
-    # Our files hold fewer slabs; more take long to check.
+    # The library's proofs have fewer slabs; more take long to check.
     if not all(1 <= slabs <= 64 for slabs in columns["slabs"]):
         raise StructureError("slabs are not from 1 to 64")
 

@@ -1,4 +1,4 @@
-"""The two tables of an archive, with columns read on demand; paths as their rows, and back."""
+"""The two tables of an archive with columns read on demand, and paths converted to rows and back."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ Record = dict[str, Any]
 
 @frozen
 class Row:
-    """A row to write: a step, perhaps with its event; an event between steps; a switch or ray of the kink before."""
+    """A row to write: a step, perhaps with an event; an event between steps; or a switch or ray of the kink before."""
 
     point: Step | LocatedEvent
     event: LocatedEvent | None
@@ -54,7 +54,7 @@ class Row:
 
 
 def rows_at(step: Step, events: Sequence[LocatedEvent]) -> list[Row]:
-    """Rows of a step and its events; an event at the step shares its row, a kink adds switches and rays."""
+    """Rows of a step and its events. An event at the step shares its row; a kink adds switches and rays."""
     if not events:
         return [Row(step, None, ACCEPTED, step.tangent)]
     last = events[-1] if events[-1].ends_step and events[-1].kind == step.kind else None
@@ -77,7 +77,7 @@ def rows_of(path: Path) -> list[Row]:
 def layout_of(
     homotopy: Any, unknowns: int, observed: Iterable[str], controller: Sequence[float], early: Iterable[Record] = ()
 ) -> Layout:
-    """The layout of a new file; `early` are rows without points."""
+    """The layout of a new file; `early`: rows of paths that ended without points."""
     said = {PARAMETER + name for name in scalars(homotopy)}
     said |= {name for row in early for name in row if name.startswith(PARAMETER)}
     layout = Layout(unknowns, more=LATER | said | {OBSERVED + name for name in observed})
@@ -159,7 +159,6 @@ def _joined(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> list[Step]
 
 
 counted = attrgetter(*COUNT_NAMES)
-"""The counters in the order of `COUNT_NAMES`."""
 
 
 def record_of(path: Path, homotopy: Any, controller: tuple[float, ...]) -> Record:
@@ -193,7 +192,7 @@ Block = dict[str, Any]
 """Rows of a table, by column."""
 
 ROWS_AT_ONCE, BYTES_AT_ONCE = 4096, 1 << 22
-"""Rows and bytes of one read: short reads cost more; 260 rows of 1000 unknowns with tangents take 4 MiB."""
+"""Rows and bytes of one read: shorter ones cost more; 260 rows of 1000 unknowns with tangents take 4 MiB."""
 
 
 class Table(Mapping[str, "np.ndarray[Any, Any]"]):
@@ -211,7 +210,7 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
     def __init__(self, layout: Layout, table: str, rows: int, fetch: Fetch) -> None:
         self.columns = {column.name: column for column in layout.columns(table)}
         self.size, self._fetch = rows, fetch
-        self.at_once = min(max(BYTES_AT_ONCE // layout.row_bytes(table), 1), ROWS_AT_ONCE)
+        self.at_once = min(max(BYTES_AT_ONCE // layout.row_bytes[table], 1), ROWS_AT_ONCE)
         self._read: dict[str, tuple[int, np.ndarray[Any, Any]]] = {}
 
     @classmethod
@@ -282,12 +281,12 @@ def kept_whole(keep: str) -> bool:
 
 
 def joined(blocks: Sequence[Block]) -> Block:
-    """Blocks of rows, one after another."""
+    """Blocks of rows as one block."""
     return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
 
 
 def _part(columns: Mapping[str, Any], column: Column, rows: slice) -> Any:
-    """Picklable, as shares of a sweep are sent."""
+    """Picklable, for shares that workers send."""
     return columns[column.name][rows]
 
 
@@ -307,7 +306,7 @@ def dataset(points: Table, paths: Table, events: Sequence[str], unknowns: int, a
 
 
 def flat(block: Mapping[str, Any]) -> dict[str, Any]:
-    """The columns, a matrix as one for each component."""
+    """The columns; a matrix becomes one for each component."""
     columns = {}
     for name, values in block.items():
         parts = {name: _text(values)} if values.ndim == 1 else {f"{name}_{i}": v for i, v in enumerate(values.T)}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from io import BytesIO
 from typing import Any
 
@@ -19,15 +19,14 @@ from continuation.status import Kind, Status
 SCHEMA = "continuation-path-2"
 """Additions keep the name; a changed meaning needs a new one."""
 
+TABLES = ("point", "path")
 ROLES = ("accepted_step", "located_event", "kink_part")
-"""Rows: accepted step, event between steps, part of the kink before."""
-
 ACCEPTED, LOCATED, KINK_PART = range(len(ROLES))
 
 
 @frozen
 class Column:
-    """A variable; bytes are text, in UTF-8."""
+    """A variable of the file; bytes are UTF-8 text."""
 
     name: str
     storage: np.dtype[Any] = field(converter=np.dtype)
@@ -60,8 +59,6 @@ def _flags(names: tuple[str, ...], values: tuple[int, ...] | None = None) -> dic
 
 
 COUNT_NAMES = {name: {"residuals": "evaluations"}.get(name, name) for name in Counts().as_dict()}
-"""Counter -> column of the path table."""
-
 _COUNT_MEANINGS = {
     "residuals": "evaluations of the residual",
     "jacobians": "evaluations of the derivative",
@@ -99,7 +96,7 @@ POINT_COLUMNS = (
     Column("tangent_parameter", "f8", "1", "unit tangent, component of the parameter"),
     Column("switch", "i4", "1", "number of a switching function that vanishes at the kink; -1 where there is none"),
 )
-"""`kink_part` rows have rays as tangents."""
+"""Rows `kink_part` have rays as tangents."""
 
 MESSAGE = Column("message", "S240", "1", "how the path ended, in words", ("path",))
 
@@ -142,7 +139,7 @@ COMPONENT = Column("component", "i4", "1", "number of the unknown", ("component"
 
 
 OBSERVED, PARAMETER = "observed_", "homotopy_"
-"""Prefixes of scalars of points, and of parameters of paths."""
+"""Prefixes of points' scalars and paths' parameters."""
 
 
 @frozen
@@ -165,13 +162,16 @@ class Layout:
         """The column's dimensions beyond the first."""
         return tuple(self.unknowns if name == "component" else self.controller for name in column.dimensions[1:])
 
-    @lru_cache(maxsize=64)  # noqa: B019
-    def row_bytes(self, table: str) -> int:
-        """Bytes of a row."""
-        return sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+    @cached_property
+    def row_bytes(self) -> dict[str, int]:
+        """Bytes of a row, by table."""
+        return {
+            table: sum(column.storage.itemsize * math.prod(self.width(column)) for column in self.columns(table))
+            for table in TABLES
+        }
 
     def filled(self, block: Mapping[str, Any], table: str, rows: int) -> dict[str, Any]:
-        """All columns of a table; missing ones and cells are filled."""
+        """All columns of a table; missing columns and cells are filled."""
         whole = {}
         for column in self.columns(table):
             values, shape = block.get(column.name), (rows, *self.width(column))
@@ -216,7 +216,7 @@ LIBVER = ("v110", "v110")
 
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable.{:10d}"
 _CHUNK_BYTES = 1 << 13
-"""Bytes of a chunk, which its first row allocates: with 512 KiB eight points of 100 unknowns take 600 KB."""
+"""Bytes of a chunk, allocated by its first row: with 512 KiB eight points of 100 unknowns take 600 KB."""
 
 
 @lru_cache(maxsize=16)
@@ -236,7 +236,6 @@ def _build(file: Any, layout: Layout, compressed: bool) -> None:
         chunks = (min(64 if table == "point" else 8, 1 << (fitting.bit_length() - 1)), *width)
         return file.create_dataset(name, (0, *width), dtype, maxshape=(None, *width), chunks=chunks, **more)
 
-    # netCDF dimensions without and with variables.
     for name in ("point", "event"):
         grows(name, ">f4", name).make_scale(_NO_VARIABLE.format(0))
     file.create_dataset("controller", (layout.controller,), ">f4").make_scale(_NO_VARIABLE.format(layout.controller))

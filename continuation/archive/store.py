@@ -1,8 +1,4 @@
-"""The file being written.
-
-A commit writes data and intent, flushes, then writes its record: a kill leaves complete rows. SWMR keeps files
-readable.
-"""
+"""The file being written: data and intent, a flush, then the commit's record (see `hdf5`). SWMR keeps it readable."""
 
 from __future__ import annotations
 
@@ -77,7 +73,7 @@ def _write_new(
     problem: tuple[str, Mapping[str, Any]] | None,
     compressed: bool,
 ) -> None:
-    # HDF5 ends the process if writing fails while it closes a file.
+    # In memory: HDF5 ends the process if writing fails while it closes a file.
     made = BytesIO(empty(layout, compressed))
     with h5py.File(made, "r+", libver=LIBVER) as new:
         new.attrs.update(attributes)
@@ -99,20 +95,20 @@ class Store:
     def __init__(self, part: File, layout: Layout, identifier: str, durable: bool) -> None:
         self.file, self.layout, self.identifier, self.durable = part, layout, identifier, durable
         self.events, self.committed = list[str](), Committed(sequence=1)
-        # HDF5 then writes at once; its default cache, 1 MiB a column, takes 25 MiB.
+        # No cache: HDF5's default, 1 MiB a column, takes 25 MiB.
         self._h5 = h5py.File(part, "r+", libver=LIBVER, rdcc_nbytes=0)
         _LIVE.add(self)
         columns = [column.name for column in (*layout.columns("point"), *layout.columns("path"), EVENT_NAME)]
         own = [f"{GROUP}/point", f"{GROUP}/path", f"{GROUP}/event", _RECORDS, _SLOTS]
         names = {*columns, *own, "point", "event", "committed_points", "committed_paths"}
-        # This opens again all that is open: datasets opened before would take twice as long.
+        # Before datasets are opened, which this would open again.
         self._h5.swmr_mode = True
         self._lock = Lock(part)
         # h5py's objects cost several times as much.
         self._data = {name: h5d.open(self._h5.id, name.encode()) for name in names}
 
     def commit(self, points: Block | None = None, paths: Block | None = None, checkpoint: bytes | None = None) -> None:
-        """Write rows and a checkpoint, then make them valid; repetition is harmless."""
+        """Write rows and a checkpoint, then make them valid; an interrupted commit may be repeated."""
         if self.abandoned:
             raise ArchiveError(f"{self.file}: is not this process's to write: it was forked from the writer")
         before = self.committed
@@ -190,7 +186,7 @@ class Store:
             self._lock.close()
 
     def abandon(self) -> None:
-        """Discard HDF5's pending writes: one that fails during close ends the process."""
+        """Discard pending writes: HDF5 ends the process if one fails during close."""
         if self._h5:
             nowhere = os.open(os.devnull, os.O_RDWR)
             os.dup2(nowhere, self._h5.id.get_vfd_handle(), inheritable=False)
@@ -219,7 +215,7 @@ def _spaces(extent: tuple[int, ...], place: tuple[int, ...], shape: tuple[int, .
 
 
 _type = lru_cache(maxsize=64)(h5t.py_create)
-"""HDF5's type of numbers; making it takes h5py half the time of a write."""
+"""HDF5's type of numbers; making it takes half the time of a write."""
 
 
 def _write(dataset: Any, extent: tuple[int, ...], place: tuple[int, ...], values: np.ndarray[Any, Any]) -> None:

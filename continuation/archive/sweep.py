@@ -1,6 +1,6 @@
 """`trace_many`: many paths, over any executor.
 
-Only this process writes; if it is killed, finished paths remain in part files.
+Only this process writes; if it is killed, part files keep finished paths.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ from continuation.step.verdict import sentence
 
 Progress = Callable[[int, int], None]
 Result = Path | Share
-"""A path, as rows where there is an archive."""
+"""A path, or its rows for an archive."""
 
 _ITS_OWN = (Exception, SystemExit, GeneratorExit)
-"""Exceptions that cost one path; Ctrl-C ends the sweep."""
+"""Exceptions that end one path only; Ctrl-C ends the sweep."""
 
 
 @frozen(eq=False)
@@ -169,7 +169,6 @@ class _Kept:
     parts: dict[Layout, Store] = field(factory=dict)
 
     def add(self, number: int, found: Result) -> None:
-        """Keep a path; `KeyboardInterrupt` if Ctrl-C stopped it."""
         if isinstance(found, Path):
             self.paths[number] = found
         else:
@@ -180,7 +179,6 @@ class _Kept:
             raise KeyboardInterrupt
 
     def finish(self) -> None:
-        """Make the archive from its parts."""
         self.stack.close()
         files = [store.file for store in self.parts.values()]
         if self.target is not None and files:
@@ -203,7 +201,7 @@ class _Kept:
 def _spread(
     executor: Executor, tasks: Sequence[Task], timeout: float | None, futures: dict[Future[Result], int]
 ) -> Iterator[tuple[int, Result]]:
-    """Submit all tasks; those lost with a worker once more."""
+    """Submit all tasks, and once more those lost with a worker."""
     lost = list[int]()
     for task in tasks:
         try:
@@ -224,7 +222,7 @@ def _spread(
             try:
                 found = future.result()
             except Exception:
-                # `traced` returns what a homotopy raises: this is the executor's.
+                # `traced` catches the homotopy's exceptions: this is the executor's.
                 lost.append(number)
             else:
                 yield number, found
@@ -234,7 +232,7 @@ def _spread(
 
 
 def _again(executor: Executor, task: Task, timeout: float | None) -> Result:
-    """Trace once more, instead of in a pool in a process of its own."""
+    """Trace once more, for a pool in a process of its own."""
     pool = isinstance(executor, ProcessPoolExecutor)
     own = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None)) if pool else executor
     try:

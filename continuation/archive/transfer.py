@@ -1,4 +1,4 @@
-"""What is made of archives: `merge`, `export`, `recover`, the sorted parts of a sweep, and the page of `describe`."""
+"""Operations on archives: `merge`, `export`, `recover`, `describe`, and the union of a sweep's parts."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ import numpy as np
 from attrs import evolve
 
 from continuation.archive.atomic import ArchiveError, as_file, beside, check_new, new_file, own, publish
-from continuation.archive.contents import TABLES, Contents
+from continuation.archive.contents import Contents
 from continuation.archive.growing import Share, copy, leading, share_of
 from continuation.archive.provenance import pack, process
 from continuation.archive.reader import Archive, open_archive
 from continuation.archive.resume import RESUMABLE
 from continuation.archive.rows import ROWS_AT_ONCE, Table, flat, record_of, row_columns
-from continuation.archive.schema import COUNT_NAMES, KINK_PART, MESSAGE, text
+from continuation.archive.schema import COUNT_NAMES, KINK_PART, MESSAGE, TABLES, text
 from continuation.arguments.checks import expect
 from continuation.path import Path
 from continuation.status import Kind, Status
@@ -75,7 +75,7 @@ def _refuse_duplicates(archives: Sequence[Archive], shares: Sequence[Share]) -> 
 
 
 def gather(files: Sequence[File], target: File) -> None:
-    """Merge parts of a sweep in member order; a path with another number of unknowns than the first keeps no points."""
+    """Merge parts of a sweep in member order; paths with another number of unknowns than the first keep no points."""
     with ExitStack() as stack:
         archives = [stack.enter_context(open_archive(file)) for file in files]
         places = sorted((m, i, k) for i, one in enumerate(archives) for k, m in enumerate(one.paths["member"].tolist()))
@@ -198,7 +198,7 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
 
 
 def _salvaged(contents: Contents, sound: Mapping[str, Any]) -> list[Share]:
-    """Nothing, then the sound rows of each path, up to its first damaged one."""
+    """An empty share, then each path's sound rows before its first damaged one."""
     layout, points, paths = contents.layout, contents.table("point"), contents.table("path")
     some = partial(Share, layout, contents.event_names, points=points, origin=contents)
     runs, shares = dict(_runs(points, sound["point"])), [some(layout.filled({}, "path", 0), rows=slice(0, 0))]
@@ -248,7 +248,7 @@ def describe(archive: Archive) -> str:
         isinstance(archive, Archive), "archive", "an open Archive, as open_archive(file) returns", archive, TypeError
     )
     page = archive.contents.guarded(lambda: "\n".join(_lines(archive)))
-    # A foreign title must not send control codes to the terminal.
+    # A title must not send control codes to the terminal.
     return "".join(c if c.isprintable() or c == "\n" else "?" for c in page) + "\n"
 
 
@@ -278,7 +278,6 @@ def _lines(archive: Archive) -> Iterator[str]:
 
 
 def _fields(trees: Mapping[str, Any]) -> str:
-    """Numbers, texts, and the names of classes."""
     plain = {name: tree.get("class", "...") if isinstance(tree, dict) else tree for name, tree in trees.items()}
     return ", ".join(f"{name}={str(value).rpartition(':')[2]}" for name, value in plain.items())
 
@@ -287,7 +286,6 @@ def _paths(archive: Archive) -> Iterator[str]:
     statuses, members, messages = (archive.paths[name] for name in ("status", "member", "message"))
     for value, count in zip(*np.unique(statuses, return_counts=True)):
         yield f"  {count:>8}  {Status(int(value)).name}"
-    # Those that can be resumed or raised come first.
     for row in np.argsort(~np.isin(statuses, RESUMABLE), kind="stable")[:_LISTED].tolist():
         text = messages[row].decode(errors="replace") or "still being traced, or its writer was killed"
         yield f"  path {row} (member {members[row]}): {text}"

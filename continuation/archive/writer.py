@@ -38,7 +38,7 @@ from continuation.step.state import State
 from continuation.step.tracer import Tracer
 
 Mark = tuple[State, tuple[int, ...], int]
-"""A point to resume from: state, counters, earlier rows."""
+"""A point to resume from: state, counters, number of earlier rows."""
 
 
 @frozen
@@ -95,16 +95,16 @@ class PathLog:
 
     file: File
     _rows: tuple[int, list[Row]]
-    """Number of the first uncommitted row; these rows."""
+    """Number of the first uncommitted row, and these rows."""
     _ended: dict[int, Record]
-    """Uncommitted rows of ended paths."""
+    """Uncommitted rows of the path table."""
     _many = _closed = False
     _store: Store | None = None
     _open: OpenPath | None = None
     _limits, _whole, _save_every, _durable = Limits(), True, 1, False
     _about: tuple[str, Mapping[str, Any]] = ("", {})
     _first: Any = None
-    """The homotopy that the file's problem group describes."""
+    """The homotopy in the problem group."""
     _commit_at = 0.0
 
     def __init__(
@@ -168,7 +168,7 @@ class PathLog:
             return
         state, (first, rows) = tracer.state, self._rows
         if state is not None and state.index == step.index:
-            # The path may still end at this point, so a trace resumes one point earlier.
+            # The path may still end here: a trace resumes one point earlier.
             mark = state, counted(tracer.counts), first + len(rows) - path.first
             path.resume, path.last = path.last or mark, mark
         limits = self._limits

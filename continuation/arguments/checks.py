@@ -21,7 +21,6 @@ def complain(error: type[Exception], name: str, expected: str, value: Any) -> Ex
 
 
 def _shown(value: Any) -> str:
-    """A value in one line of at most 200 characters."""
     return " ".join(repr(value).split())[:200]
 
 
@@ -49,7 +48,7 @@ def of_kind(expected: str, holds: Callable[[Any], bool], error: type[Exception] 
 def number(expected: str, allowed: Callable[[float], bool] = math.isfinite) -> Validator:
     """An attrs validator for real numbers.
 
-    `expected`: allowed numbers, for messages. `allowed`: False for NaN.
+    `expected`: names them in messages. `allowed`: False for NaN.
     """
     return and_(of_kind("a real number", is_number), of_kind(expected, lambda x: allowed(float(x)), ValueError))
 
@@ -94,7 +93,7 @@ FACTOR = number("a finite number above 1", lambda x: 1.0 < x < math.inf)
 
 
 def instance_with(name: str, value: Any, attributes: Sequence[str], expected: str) -> None:
-    """Raise TypeError unless `value` is an object with the attributes, not a class."""
+    """Raise TypeError for a class, or an object without these attributes."""
     if isinstance(value, type):
         raise TypeError(f"{name}: expected {expected}, found the class {value.__name__}; {value.__name__}() is one")
     missing = [attribute for attribute in attributes if not hasattr(value, attribute)]
@@ -103,10 +102,7 @@ def instance_with(name: str, value: Any, attributes: Sequence[str], expected: st
 
 
 def real_vector(name: str, value: Any) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """A copy of `value` as an array of floats.
-
-    Raises `ValueError` for complex or masked entries.
-    """
+    """A copy of `value` as an array of floats; `ValueError` for complex or masked entries."""
     if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
         raise ValueError(f"{name}: expected real numbers, found a masked array with masked entries; fill them first")
     try:

@@ -12,18 +12,13 @@ from attrs import field, frozen
 from continuation.arguments.checks import expect
 
 ATTRIBUTES = ("parameter_name", "names", "units")
-"""Attributes of homotopies and archive roots."""
-
 _LONGEST = 100
-"""Longest name from a file: 100 characters of TeX hold 14 nested roots; 30 exhaust matplotlib's stack."""
+"""Longest name from a file: 100 characters of TeX hold 14 nested roots; 30 roots exhaust matplotlib's stack."""
 
 
 @frozen
 class Labels:
-    """Names and units.
-
-    `names`: of the unknowns. `units`: by name, also of parameter and observed scalars.
-    """
+    """Names of unknowns, and units by name, also of parameter and observed scalars."""
 
     parameter_name: str = ""
     names: tuple[str, ...] = ()

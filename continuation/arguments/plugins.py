@@ -6,7 +6,7 @@ In the ``pyproject.toml`` of a package::
     truss = "snapthrough:VonMisesTruss"
 
 The object is a class or function that returns a homotopy; its parameters are the options, its docstring's first line
-the summary, its attributes `problem_class` and `references` purpose and sources. It is imported on use.
+the summary, its attributes `problem_class` and `references` purpose and sources.
 """
 
 from __future__ import annotations
@@ -37,15 +37,9 @@ class PluginError(LookupError):
 
 @frozen
 class Plugin:
-    """A registered name.
+    """A registered name; several `points` if packages share it.
 
-    Attributes
-    ----------
-    name : str
-    points : tuple of EntryPoint
-        Several if packages share the name.
-    kind : str
-        "homotopy", "scene", "study" or "command".
+    `kind`: "homotopy", "scene", "study" or "command".
     """
 
     name: str
@@ -59,13 +53,7 @@ class Plugin:
         return " and ".join(f"{owner} ({point.value})" for owner, point in zip(owners, self.points))
 
     def load(self) -> Factory:
-        """Import the class or function.
-
-        Raises
-        ------
-        PluginError
-            If packages share the name, or the import fails.
-        """
+        """Import the class or function; `PluginError` if packages share the name, or the import fails."""
         if len(self.points) > 1:
             raise PluginError(f"{self.name}: expected one package that provides it, found {self.origin}")
         (point,) = self.points
@@ -81,10 +69,7 @@ class Plugin:
 
 @frozen
 class Description:
-    """A plug-in's description.
-
-    `summary`: first line of the docstring. `options`: as ``name=default``. `references`: BibTeX.
-    """
+    """A plug-in's summary (first line of its docstring), options as ``name=default``, and references in BibTeX."""
 
     summary: str
     options: tuple[str, ...]
@@ -131,7 +116,7 @@ def find(name: str, group: str = GROUP) -> Factory:
 
 
 def describe(factory: Factory) -> Description:
-    """The description; attributes come from the result of a function without arguments."""
+    """The description; a function without arguments is called for its attributes."""
     found = options(factory)
     source: Any = factory
     if not isinstance(factory, type) and all(option.default is not option.empty for option in found.values()):
@@ -154,7 +139,7 @@ def options(factory: Factory) -> dict[str, inspect.Parameter]:
 
 
 def _shown(option: inspect.Parameter) -> str:
-    """``name=default``; attrs computes some defaults."""
+    """``name=default``; some defaults are computed by attrs."""
     default = "" if option.default is option.empty else f"={option.default!r}"
     return option.name + default.replace("=NOTHING", "=(computed)")
 

@@ -13,10 +13,10 @@ from continuation.path import Path
 from continuation.path.path import require_path
 
 HALVINGS = 4
-"""Halvings of a part of a step, whose chords Romberg's rule extrapolates; below it a part is divided."""
+"""Halvings of a part of a step, whose chords Romberg's rule extrapolates, before the part is divided."""
 
 AGREEMENT = 1e-10
-"""Difference of the last two extrapolations, relative to the length so far: the sum is then right to nine digits."""
+"""Difference of the last two extrapolations, relative to the length so far: nine digits are then right."""
 
 
 def arclength(homotopy: Any, path: Path) -> float:

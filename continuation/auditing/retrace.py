@@ -30,7 +30,7 @@ from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance, as_tolerance
 
 BEFORE = 0.1
-"""Share of the last step before a branch point at which a retrace begins: nearer, the matrix is almost singular."""
+"""Share of the last step before a branch point at which a retrace begins: nearer, H' is almost singular."""
 
 
 @frozen(eq=False)

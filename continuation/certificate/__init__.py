@@ -1,8 +1,8 @@
 """Proofs that a traced path is one curve, in interval arithmetic.
 
 Krawczyk's test gives tubes around the cubics between points, each with exactly one curve of zeros. Tests at single
-parameters link tubes, prove points and events, and join the arcs of kinked paths. Signs along
-the curve count turning points and kinks.
+parameters link the tubes, prove points and events, and join the arcs of kinked paths. Signs along the curve count
+turning points and kinks.
 """
 
 from continuation.certificate.certifying import certify

@@ -1,8 +1,8 @@
 """Kinked paths: each smooth arc is proved on its piece and joined to the next.
 
-The switch has different signs just before and behind an arc's end, so the arc's curve has a zero z between. Both pieces
-equal the map at z, and the next arc's tube must hold z. The switch's derivative along either curve has one sign, so z
-is unique.
+Just before and behind an arc's end the switch has different signs, so the arc's curve has a zero z between. Both pieces
+equal the map at z; the next arc's tube must hold z. The switch's derivative along either curve has one sign, so z is
+unique.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class SmoothPart:
 
 
 def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> Proof:
-    """Prove a path in pieces, or check `cells`; `prove` proves one arc."""
+    """Prove a path in pieces, or check `cells`; `prove` proves an arc."""
     switches = ByIntervals(homotopy.switches, path.u.shape[1] - 1)
     kinks, gaps = _listed(path)
     places = [0, *(kink.step for kink in kinks), len(path) - 1]
@@ -54,7 +54,7 @@ def by_pieces(homotopy: Any, path: Path, cells: Cells | None, prove: Prove) -> P
     arcs: list[SmoothPart | None] = []
     before = None
     for k, (first, last) in enumerate(pairwise(places)):
-        if first == last:  # the path ends here
+        if first == last:
             arcs.append(None)
             continue
         steps, ends = path.steps[first : last + 1], (tied[k], tied[k + 1])
@@ -118,7 +118,7 @@ def _listed(path: Path) -> tuple[list[LocatedEvent], list[Gap]]:
 def _signs(
     homotopy: Any, steps: list[Step], ends: tuple[tuple[int, ...], ...], before: Array | None
 ) -> tuple[tuple[float, float], Array | None]:
-    """The last step examined, and the switches' signs, None off one piece."""
+    """The last step examined, and each switch's sign; None off one piece."""
     with np.errstate(all="ignore"):
         values = np.array([homotopy.switches(step.u[:-1], step.u[-1]) for step in steps], dtype=float)
         middle = 0.5 * (steps[0].u + steps[1].u)
@@ -142,11 +142,8 @@ def _from(steps: list[Step], kink: LocatedEvent | None) -> list[Step]:
     return [evolve(steps[0], tangent=away), *steps[1:]]
 
 
-# The switches along an arc
-
-
 def _look_at(switches: ByIntervals) -> SignsAlong:
-    """Return a function that observes the parameter's rate, switches, and their derivatives along the curve."""
+    """A function that observes the parameter's rate, the switches and their derivatives along the curve."""
 
     def look(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, Index]]:
         owner = np.repeat(np.arange(len(slabs)), SLAB_PARTS)
@@ -177,7 +174,7 @@ def _value_at(switches: ByIntervals, slabs: Slabs, radius: Array) -> Index:
 def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> str:
     """Why a switch may change its sign on an arc. `at`: whether it should vanish at either end."""
     begin, *inner, end = found
-    # A switch that should vanish at an end is round-off there.
+    # A switch that vanishes at an end is round-off there.
     found = [*([] if at[0] or not begin.sign else [begin]), *inner, *([] if at[1] or not end.sign else [end])]
     understood, unknown = turns(found)
     first = [turn for turn in understood if turn.lo <= 0.0 <= turn.hi]
@@ -191,13 +188,10 @@ def _kept(found: list[Piece], count: int, sign: int, at: tuple[bool, bool]) -> s
     return NO_KINK if (len(first), len(last)) != at else ""
 
 
-# From one arc to the next
-
-
 def _joined(
     homotopy: Any, before: SmoothPart | None, after: SmoothPart | None, kink: LocatedEvent
 ) -> tuple[float, float] | str:
-    """A range of arclength with the kink, or why the arcs are not joined."""
+    """A range of arclength that holds the kink, or why the arcs are not joined."""
     if len(kink.switches) != 1:
         return "several switches vanish in one kink" if kink.switches else NO_KINK
     (j,), s = kink.switches, kink.arclength

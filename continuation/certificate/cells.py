@@ -1,4 +1,4 @@
-"""Cells: pieces of a path with a cubic, a chart, and a tube."""
+"""Cells of a proof."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ OVERHANG = 1e-3
 """Overlap of a tube with its neighbours, relative to its length."""
 
 SLAB_PARTS = 4
-"""Parts of a slab that are looked at apart: for H on the cubic, whose remainder is of third order, and for signs of
-what may vanish inside; twice as many for the parameter's rate, or two turning points 1e-10 apart are not told apart.
-With eight for H the exponential cosines with n = 8 take a third longer, in as many boxes."""
+"""Parts of a slab for H on the cubic, whose remainder is of third order, and for signs of what may vanish inside; twice
+as many for the parameter's rate, else two turning points 1e-10 apart look like one. With eight for H the exponential
+cosines with n = 8 take a third longer, in as many boxes."""
 
 
 @frozen(eq=False)
@@ -29,7 +29,7 @@ class Cells:
 
     `begin`, `end`: nodes p(0), p(1) of the Hermite cubic p. `slope_begin`, `slope_end`: p'(0), p'(1). `chart`: the
     vector c; u has the parameter s with c . (u - p(s)) = 0. `radius`: the tube is |u - p(s)| <= radius by component.
-    `slabs`, shape (cells,): equal parts in the test. `place`, shape (cells, 2): arclengths of the ends.
+    `slabs`, shape (cells,): number of equal parts in the test. `place`, shape (cells, 2): arclengths of the ends.
     """
 
     begin: Array
@@ -64,7 +64,7 @@ def joined(parts: list[Cells]) -> Cells:
 def cell_between(
     begin: Array, tangent_begin: Array, end: Array, tangent_end: Array, weights: Array, place: tuple[float, float]
 ) -> Cells:
-    """The cell between two nodes, without a tube; the chart is orthogonal to the chord in the metric.
+    """The cell between two nodes, without a tube; its chart is orthogonal to the chord in the metric.
 
     `place`: arclengths.
     """
@@ -82,10 +82,7 @@ def cell_between(
 
 
 def cell_sizes(cells: Cells, still: Array | None = None) -> Array:
-    """Extent by component, at least 1e-6 of the chord in the metric.
-
-    `still`: unit lengths of components that stand still.
-    """
+    """Extent by component, at least 1e-6 of the chord; `still`: unit lengths of components that stand still."""
     far = np.maximum(np.abs(cells.end - cells.begin), np.maximum(np.abs(cells.slope_begin), np.abs(cells.slope_end)))
     with np.errstate(all="ignore"):
         # The chart is weights * chord up to a factor, so sqrt(chord / chart) is a unit length.
@@ -124,7 +121,7 @@ class Slabs:
     def cubic(self) -> Ends:
         """Coefficients q of p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
 
-        The nearer end is the origin: a node has no round-off from the other.
+        The nearer end is the origin, so that a node has no round-off from the other.
         """
         cells, later = self.cells, self.middle[:, None] > 0.5
         sign, m = np.where(later, -1.0, 1.0), self.middle[:, None]
@@ -137,7 +134,6 @@ class Slabs:
         third = bend + by_last
         second = third + by_last + by_last
         parts = base + t * (slope + t * third), slope + t * (second + bend), second, last
-        # Undo the reversal of t.
         lo, hi = (np.stack([getattr(part, end) for part in parts], axis=1) for end in ("lo", "hi"))
         turned = later[:, :, None] & np.array([False, True, False, True])[:, None]
         return Ends(np.where(turned, -hi, lo), np.where(turned, -lo, hi))

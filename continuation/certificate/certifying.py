@@ -34,7 +34,7 @@ from continuation.step.tracer import Tracer
 from continuation.tolerance import Tolerance
 
 CELL_HALVINGS = 8
-"""Halvings of a cell: its fourth-order error is then round-off."""
+"""Most halvings of a cell: its fourth-order error is then round-off."""
 
 TAIL_NODES = 60
 """Most points added next to a singular end; ten suffice if parameter and distance fall alike."""
@@ -127,7 +127,7 @@ def _searched(engine: Engine, homotopy: Any, path: Path, look: SignsAlong) -> tu
     solver = PathSolver(Evaluator(homotopy, Counts()), Tolerance())
     nodes = _nodes(solver.evaluator, homotopy, path)
     end, own = nodes[-1], getattr(homotopy, "metric", None) is not None
-    # A path is proved up to this distance from a singular end; farther cells are cut without limit.
+    # Nearer a singular end the path is not proved; farther cells are cut without limit.
     near = NEXT_TO_END * abs(float(nodes[0].u[-1] - end.u[-1])) if made(path.steps[-1]) else np.inf
     pending = [(a, b, CELL_HALVINGS) for a, b in pairwise(nodes)]
     done: list[Tubes] = []
@@ -147,7 +147,7 @@ def _searched(engine: Engine, homotopy: Any, path: Path, look: SignsAlong) -> tu
                 continue
             singular = b is end and near < np.inf and abs(a.u[-1] - end.u[-1]) > 0.0
             if singular and abs(a.u[-1] - end.u[-1]) <= near:
-                continue  # the proof of the end covers the rest
+                continue
             why: PathNode | str = "no tube holds it, however short"
             if singular or left:
                 why = _between(solver, a, b, END_RATIO if singular else 0.5)
@@ -175,9 +175,9 @@ def _nodes(evaluator: Evaluator, homotopy: Any, path: Path) -> list[PathNode]:
 
 
 def _between(solver: PathSolver, a: PathNode, b: PathNode, share: float) -> PathNode | str:
-    """A point of the path between two nodes, or why there is none; `share`: of their distance, from b.
+    """A point of the path between two nodes, at the part `share` of their distance from b, or why there is none.
 
-    The midpoint guess uses slopes as long as the chord, as those in the chart may be huge. Next to a singular end a
+    The midpoint guess uses slopes as long as the chord: those in the chart may be huge. Next to a singular end a
     parabola gives the guess.
     """
     cell, x = _cell(a, b), 1.0 - share
@@ -198,15 +198,11 @@ def _cell(a: PathNode, b: PathNode) -> Cells:
 
 
 def _weights(homotopy: Any, path: Path) -> list[Array]:
-    """Weights of the next step, stored or by the rule."""
     rule, out = metric_of(homotopy, path), list[Array]()
     for step, after in zip(path.steps, [*path.steps[1:], path.steps[-1]]):
         usual = rule.weights(step.u, step.tangent, out[-1] if out else None)
         out.append(usual if after.weights is None else after.weights)
     return out
-
-
-# Paths with further unknowns, with which the residual is plain arithmetic
 
 
 @runtime_checkable
@@ -229,7 +225,7 @@ class SupportsWrittenOut(Protocol):
 def lifted(homotopy: Any, path: Path, cells: Cells | None = None) -> tuple[Any, Path] | Proof:
     """The homotopy and path to prove, perhaps with further unknowns, or an empty proof with a reason.
 
-    Nodes of `cells` give those of the points that they share.
+    Points that are nodes of `cells` take the unknowns from these.
     """
     points = path.u
     width, ends = points.shape[1], (float(path.arclength[0]), float(path.arclength[-1]))
@@ -260,8 +256,6 @@ def _lifted(whole: Any, path: Path, cells: Cells | None) -> Path:
     return evolve(path, steps=steps, events=events)
 
 
-# Steps short enough for a proof
-
 TRACES = 4
 """Most traces; each halves the steps."""
 
@@ -270,7 +264,7 @@ TRACES = 4
 def provable(homotopy: Any, options: Options) -> tuple[Options, Proof | None]:
     """Options with which the path, or its longest part, is proved, and the proof, if any.
 
-    The recorded trace is the proved one: traces with the same number of threads are equal.
+    The recorded trace is the proved one: traces with equal numbers of threads are equal.
     """
     best: tuple[Options, Proof] | None = None
     tried = options

@@ -22,7 +22,7 @@ LIMIT = "the end is the limit of a series, of which nothing is proved"
 
 @runtime_checkable
 class SupportsEndCertificate(Protocol):
-    """A homotopy that proves in another way that its ends are solutions."""
+    """A homotopy that proves its ends in another way."""
 
     def certify_end(self, y: Array) -> str:
         """A sentence on the end y, shape (N,), if it is proved; else empty."""
@@ -50,5 +50,5 @@ def ending(cells: Cells, at: Nodes, ends: Nodes, path: Path, homotopy: Any) -> t
 
 
 def made(step: Step) -> bool:
-    """Whether an end was found without a step, so with a chord as tangent."""
+    """Whether an end was found without a step, so has a chord as tangent."""
     return step.index > 0 and step.segment is None and step.corrector_iterations == 0

@@ -12,8 +12,8 @@ from continuation.certificate.cells import Cells, Index, Slabs
 from continuation.numbers.ends import TINIEST, Ends, accumulated
 
 BATCH = 100_000
-"""Numbers in an array of matrices of a batch: a few such arrays fit in cache; with four times as many a proof takes a
-third longer."""
+"""Numbers in an array of matrices of a batch: a few arrays fit the cache; with four times as many a proof takes a third
+longer."""
 
 
 class Judged(Protocol):

@@ -16,11 +16,11 @@ RANGE = 0.25
 """Largest range, in cells, that locates a turning point."""
 
 SIGN_PLACES = 32
-"""Places in a range at which the sign is tried, twice: a thousandth of it is left."""
+"""Places in a range at which the sign is tried, twice: a thousandth of the range is left."""
 
 SignsAlong = Callable[[Judged, Slabs, Array], list[tuple[Index, Index]]]
-"""Signs of observed numbers, and of their derivatives along the curve within a radius of the cubic, on equal parts of
-slabs, shape (slabs, parts)."""
+"""Signs of observed numbers and of their derivatives along curves within a radius of the cubic, on equal parts of
+slabs: shape (slabs, parts)."""
 
 
 @frozen(eq=False)
@@ -38,8 +38,8 @@ class Piece:
 
 @frozen(eq=False)
 class Turn:
-    """A range, in cells, with exactly one zero and a derivative of sign `bend`; not `certain` if the zero may lie
-    beyond the path's end.
+    """A range, in cells, with exactly one zero, where the derivative has the sign `bend`; not `certain` if the zero may
+    lie beyond the path's end.
     """
 
     lo: float
@@ -60,7 +60,7 @@ def turning(judged: Judged, slabs: Slabs, radius: Array) -> list[tuple[Index, In
 
 
 def pieces(look: SignsAlong, judged: Judged, slabs: Slabs, radius: Array, count: int) -> list[list[list[Piece]]]:
-    """Pieces of `count` cells for each number: a slab with one sign, else its parts."""
+    """Pieces of `count` cells for each number: a slab if it has one sign, else its parts."""
     numbers = look(judged, slabs, radius)
     out: list[list[list[Piece]]] = [[[] for _ in numbers] for _ in range(count)]
     for j, (sign, bend) in enumerate(numbers):
@@ -76,7 +76,7 @@ def pieces(look: SignsAlong, judged: Judged, slabs: Slabs, radius: Array, count:
 def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
     """Zeros in order, and ranges with an unknown number of zeros.
 
-    A run of pieces without sign holds exactly one zero if the derivative has one sign and the signs around differ.
+    A run of pieces without sign holds exactly one zero if its derivative has one sign and the signs around it differ.
     """
     out: list[Turn] = []
     unknown: list[tuple[float, float]] = []
@@ -98,7 +98,7 @@ def turns(found: list[Piece]) -> tuple[list[Turn], list[tuple[float, float]]]:
 
 
 def located(engine: Engine, cells: Cells, found: list[Turn]) -> list[Turn]:
-    """Shorten the turning points' ranges above `RANGE`, by signs of the monotone number."""
+    """Shorten turning points' ranges above `RANGE` by signs of the monotone number."""
     found = list(found)
     wide = [k for k, turn in enumerate(found) if turn.hi - turn.lo > RANGE]
     for _ in range(2 if wide else 0):

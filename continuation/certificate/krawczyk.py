@@ -75,7 +75,7 @@ class ByIntervals:
         moving = self.moving and bool(slabs.half.any())
         if moving:
             size = cell_sizes(slabs.cells)
-            # Components that stand still get the room of others, in unit lengths.
+            # Components that stand still get the largest range, in unit lengths.
             unit = np.where(size < radius, radius * (size / radius).max(axis=1, keepdims=True), size)
             W = self._change(whole, slabs.velocity, unit)
         at, largest = slabs.cubic[:, 0] + Ends(-radius, radius), W.magnitude().sum(axis=(1, 2), keepdims=True)
@@ -145,7 +145,7 @@ class ByIntervals:
 
 
 def engine_of(homotopy: Any) -> Engine:
-    """What bounds H and H' on boxes: the homotopy's own engine, else its residual in interval arithmetic.
+    """The source of bounds: the homotopy's own engine, else its residual in interval arithmetic.
 
     `TypeError` names an operation of the residual that intervals lack.
     """
@@ -192,7 +192,7 @@ class Bounded:
         return self._solved(thin(self.Y[:, :, -1]), radius, tube)
 
     def pace(self, radius: Array, tube: Array) -> tuple[Ends, Ends]:
-        """See `Judged.pace`, with c . t = 1. Slabs without a sign are cut: images of wide boxes become a tenth."""
+        """See `Judged.pace`, with c . t = 1. Slabs without a sign are cut, which shrinks wide images tenfold."""
         slope, most = self.tangent(radius, tube)[:, -1:], 2 * SLAB_PARTS
         ends = np.repeat([[slope.lo, slope.hi], np.full((2, len(radius), 1), np.nan)], most, axis=3)
         with np.errstate(all="ignore"):
@@ -223,7 +223,7 @@ class Bounded:
         """
         t = self.tangent(radius, radius)
         image = self.engine.image(along_curve(self.slabs.box(radius), t, thin(np.zeros_like(t.lo)))).c
-        if len(image.lo) < 3:  # constant along every line
+        if len(image.lo) < 3:
             return t[:, -1], thin(np.full(len(t), np.nan))
         second = moved(lambda part: np.concatenate([part[2], np.zeros((len(t), 1))], axis=1), image)
         return t[:, -1], -self._solved(applied(self.Y, second), radius, radius)[:, -1]

@@ -20,15 +20,15 @@ RADII = 12
 """Radii tried with one test's bounds."""
 
 INFLATION = 1.1
-"""Factor from image to next radii: fixed points are approached from above."""
+"""Factor from image to next radii: it lets them pass the fixed point from below."""
 
 NODE_ULPS = 32.0
-"""Least box, and least radius of a tube, in ulps: round-off alone must not fill it."""
+"""Least box, and least radius of a tube, in ulps: round-off must not fill it."""
 
 
 @frozen(eq=False)
 class Nodes:
-    """Points of the curve near ends of cells: |z - u| <= `radius`, shape (cells, N + 1), or nan; `tangent` with c . t =
+    """Points of the curve near ends of cells: |z - u| <= `radius`, shape (cells, N + 1), or nan; `tangent` has c . t =
     1.
     """
 
@@ -98,7 +98,7 @@ def largest_by_cell(values: Array, owner: Index, count: int) -> Array:
 
 
 def reach(cells: Cells, s: Array, off: Ends) -> Array:
-    """Radius that a tube needs at s in [0, 1] to hold points `off` the cubic; nan beyond the tube."""
+    """Radius with which a tube holds points at s in [0, 1], `off` the cubic; nan beyond the tube."""
     count = len(cells)
     speed = Slabs(np.arange(count), s, np.full(count, 0.9 * OVERHANG), cells).velocity
     with np.errstate(all="ignore"):

@@ -31,7 +31,7 @@ class Gap:
 
 
 def merged(gaps: list[Gap]) -> tuple[Gap, ...]:
-    """Gaps in order; touching ones with one reason are merged."""
+    """Gaps in order; touching gaps with one reason become one."""
     out: list[Gap] = []
     for gap in sorted(gaps, key=lambda gap: (gap.reason, gap.begin, gap.end)):
         if out and out[-1].reason == gap.reason and gap.begin <= out[-1].end:
@@ -111,7 +111,7 @@ class Proof:
 
     @property
     def shadow(self) -> Cells:
-        """Cells in the path's unknowns."""
+        """Cells, reduced to the path's unknowns."""
         rows = {name: getattr(self.cells, name)[:, -self.width :] for name in COLUMNS if name not in ("slabs", "place")}
         return evolve(self.cells, **rows)
 

@@ -12,7 +12,7 @@ from continuation.certificate.folds import Piece, SignsAlong, pieces
 from continuation.certificate.links import INFLATION, NODE_ULPS, settled
 
 LEAST_RADIUS = 1e-6
-"""Least radius, in sizes of the cell: tubes thinner than round-off miss the neighbour's curve."""
+"""Least radius, in sizes of the cell: tubes as thin as round-off miss the neighbour's curve."""
 
 FIRST_RADII = 0.05
 """First radii, in slab lengths; derivatives widen in proportion."""
@@ -78,7 +78,7 @@ def _search(engine: Engine, cells: Cells, look: SignsAlong) -> Tubes:
         tried = cells.take(pending).with_tubes(radius[pending], slabs[pending])
         parts = slabs_of(tried)
         judged = engine.judge(parts, tried.radius[parts.owner])
-        # Other bounds hold up to their radii.
+        # Interval bounds hold up to their radii only.
         bounded = np.full_like(tried.radius, np.inf) if engine.exact else tried.radius
         wanted, kappa, _ = settled(judged, parts.owner, least[pending], bounded)
         good = _every(contracts(parts, judged, wanted[parts.owner]), parts.owner, len(tried))
@@ -97,7 +97,7 @@ def _search(engine: Engine, cells: Cells, look: SignsAlong) -> Tubes:
         if not len(pending):
             break
     cells = cells.with_tubes(radius, np.minimum(slabs, engine.most))
-    if not engine.exact and proved.any():  # one batch
+    if not engine.exact and proved.any():
         for k, found in zip(np.flatnonzero(proved), check(engine, cells.take(proved), look).pieces):
             known[k] = found
     return Tubes(cells, proved, known)

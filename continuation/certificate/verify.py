@@ -30,7 +30,7 @@ POINT_DISTANCE = 1e-4
 
 
 def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list[Gap], found: list[Piece]) -> Proof:
-    """The proof by tested cells in order; `gaps` so far, `found` pieces of the parameter's rate."""
+    """The proof by tested cells, in order; `gaps` so far, `found`: pieces of the parameter's rate."""
     if not len(cells):
         whole = Gap(float(path.arclength[0]), float(path.arclength[-1]), "there are no tubes")
         return Proof(cells, cells.radius, tuple(gaps) or (whole,), (), "")
@@ -59,7 +59,7 @@ def verified(engine: Engine, cells: Cells, path: Path, homotopy: Any, gaps: list
 
 
 def _joined_up(engine: Engine, cells: Cells) -> tuple[Nodes, Mask, Nodes]:
-    """Nodes at the cells' ends, links to the next, and nodes at start and end, where the chart is the parameter."""
+    """Nodes at the cells' ends, links to the next cells, and nodes at start and end, whose chart is the parameter."""
     level = np.zeros_like(cells.chart[-1:])
     level[0, -1] = 1.0
     first, last = cells.take(slice(0, 1)), evolve(cells.take(slice(-1, None)), chart=level)
@@ -98,7 +98,7 @@ def _order(cells: Cells, path: Path, first: Nodes) -> list[Gap]:
 
 
 def _beside(cells: Cells, at: Nodes, first: Nodes, path: Path) -> list[Gap]:
-    """Check that the curve is near each node: wide tubes hold moved starts too.
+    """Check that the curve is near each node: wide tubes would hold a moved start too.
 
     Nodes of sound paths are within 2e-8 of their steps (twelve acceptance problems, two presets, ten examples).
     """
@@ -115,11 +115,7 @@ def _allowed(own: Cells, u: Array, arclength: Array, path: Path) -> Array:
     return np.where(own.begin == own.end, own.radius, POINT_DISTANCE * size) + 8.0 * NODE_ULPS * EPS * np.abs(u)
 
 
-# Turning points and events
-
-
 def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) -> list[Piece]:
-    """Add signs at first and last point."""
     ends = []
     for node, k, place in ((start, 0, 0.0), (at, -1, float(len(cells)))):
         rate = int(signs(node.tangent[k, -1]))
@@ -131,7 +127,7 @@ def _between_nodes(found: list[Piece], cells: Cells, start: Nodes, at: Nodes) ->
 def _turning(
     engine: Engine, cells: Cells, found: list[Piece], path: Path, places: list[float | None]
 ) -> tuple[tuple[tuple[float, float], ...], list[Gap]]:
-    """Ranges of arclength with one turning point, and disagreements with the path."""
+    """Ranges of arclength with one turning point each, and disagreements with the path."""
     understood, unknown = turns(found)
     gaps = [Gap(*_range(cells, *place), "turning points could not be counted") for place in unknown]
     listed = [(p, e.arclength) for p, e in zip(places, path.events) if e.turns]
@@ -166,7 +162,6 @@ def _range(cells: Cells, lo: float, hi: float) -> tuple[float, float]:
 
 
 def _places(engine: Engine, cells: Cells, path: Path) -> list[float | None]:
-    """Cell index + parameter of each event near the curve, else None."""
     places = [_place(cells, event, path) for event in path.events]
     known = [k for k, place in enumerate(places) if place is not None]
     if known:
@@ -192,7 +187,7 @@ def _place(cells: Cells, event: LocatedEvent, path: Path) -> float | None:
 
 
 def _parameter(cell: Cells, u: Array) -> Array:
-    """About where c . (p(t) - u) = 0: the cubic advances in a proved cell."""
+    """About the t with c . (p(t) - u) = 0: the cubic advances in a proved cell."""
     chord, first, last = cell.end - cell.begin, cell.slope_begin, cell.slope_end
     rows = first + last - 2.0 * chord, 3.0 * chord - 2.0 * first - last, first, cell.begin - u
     cubic = np.poly1d([float(cell.chart[0] @ row[0]) for row in rows])

@@ -1,18 +1,6 @@
-"""Speed against accuracy: studies of problems x methods x a ladder, with tables and pictures.
+"""Speed against accuracy: studies of problems x methods x tolerances, with tables and pictures.
 
-A study of a homotopy in ten lines::
-
-    from continuation import chart
-    from continuation.predictors import Hermite, Tangent
-
-    study = chart.Study(
-        name="mine",
-        problems=[chart.Problem("mine", MyHomotopy(), truth=chart.reference(MyHomotopy()))],
-        methods=[chart.traced("Hermite", predictor=Hermite()), chart.traced("tangent", predictor=Tangent())],
-    )
-    results = chart.run(study)
-    print(chart.summary(results).text())
-    chart.Lines("end_point", "factorizations").draw(results).savefig("mine.png")
+`docs/howto/chart.md` has a study of a homotopy in ten lines.
 """
 
 from continuation.chart.model import Answer, Method, Problem, Truth, reference, traced

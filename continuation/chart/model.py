@@ -33,7 +33,7 @@ class Truth:
 
 
 REFERENCE_TOLERANCE = 1e-11
-"""Last Newton increment of a reference; the next is round-off."""
+"""Last Newton increment of a reference; the next would be round-off."""
 
 
 def reference(homotopy: Any, **options: Any) -> Truth:
@@ -82,7 +82,7 @@ class Problem:
 
 
 def order_of(subject: Any) -> int:
-    """The number of unknowns of a homotopy, or of a problem that says it."""
+    """The number of unknowns, if the subject is a homotopy or tells it."""
     return len(subject.start()[0]) if offers(subject, Homotopy) else int(getattr(subject, "n", 0))
 
 

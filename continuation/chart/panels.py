@@ -18,7 +18,6 @@ LINE = 0.165
 Figure = Any
 
 Dot = tuple[float, dict[str, Any]]
-"""Place and style."""
 
 
 def _look(k: int, outside: bool) -> dict[str, Any]:

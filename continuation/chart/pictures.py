@@ -21,7 +21,6 @@ from continuation.chart.results import WORK, Results, Row, excess, some
 from continuation.plot.drawing import COLOURS, Axes
 
 Labelled = tuple[str, dict[str, Any], Sequence[tuple[float, float]]]
-"""Name, style, points."""
 
 
 def _names(value: str | Sequence[str]) -> tuple[str, ...]:
@@ -91,7 +90,6 @@ class Lines:
             for name, look, points in lines
             if points or "failed" in name
         ]
-        # The key has the order of the curves' ends.
         key = [line for _, line in sorted(drawn, key=lambda pair: -pair[0])]
         axes.legend(handles=key, loc="upper left", bbox_to_anchor=(1.0, 1.03), frameon=False, fontsize="small")
         axes.set_xscale("log")

@@ -88,7 +88,6 @@ WORK: Mapping[str, str] = {
     "accepted": "accepted steps",
     "seconds": "processor time (s)",
 }
-"""Labels of a run's work."""
 
 
 def some(kind: str, wanted: Sequence[str] | None, known: Iterable[str]) -> Sequence[str]:

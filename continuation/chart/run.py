@@ -50,7 +50,6 @@ def _row(study: Study, problem: Problem, method: Method, rung: float) -> Row:
     failure, message = verdict(problem, answer)
     end = math.nan if answer.end is None else distance(answer.end, problem.truth.end)
     known = {"end_point": end, **answer.observed}
-    # The first run may compile.
     again = [_timed(problem, method, rung)[1] for _ in range(0 if failure else study.repeats)]
     return Row(
         problem=problem.name,
@@ -68,11 +67,10 @@ def _row(study: Study, problem: Problem, method: Method, rung: float) -> Row:
 
 
 def _timed(problem: Problem, method: Method, rung: float) -> tuple[Answer, float]:
-    # Processor time is then independent of other load.
     begin = time.process_time()
     try:
         answer = method.run(problem, rung)
-    except Exception as error:  # Other methods still run.
+    except Exception as error:
         sentence = f"{type(error).__name__}: {error}"
         answer = Answer(counts=Counts(), failure="exception", message=sentence)
     return answer, time.process_time() - begin

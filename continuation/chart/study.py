@@ -16,8 +16,7 @@ from continuation.chart.model import Method, Problem
 from continuation.chart.results import WORK, some
 
 Size = Literal["smoke", "moderate", "full"]
-"""Size of a ready study: for tests, for minutes on two cores, for reports. A ready study maps (size, compare) to
-studies; `compare` adds outside solvers."""
+"""Size of a ready study: for tests, for minutes on two cores, for reports."""
 
 
 WRONG = 1e-2

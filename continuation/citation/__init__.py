@@ -51,7 +51,7 @@ def cite(source: Any) -> str:
 
 
 def references_of(*parts: Any) -> tuple[str, ...]:
-    """The parts' BibTeX `references`, each key once."""
+    """The parts' BibTeX, each key once."""
     found = [getattr(part, "references", ()) for part in parts]
     for given in found:
         expect(
@@ -65,7 +65,7 @@ def references_of(*parts: Any) -> tuple[str, ...]:
 
 
 def entries(text: str) -> tuple[str, ...]:
-    """BibTeX entries separated by empty lines."""
+    """Split BibTeX entries at empty lines."""
     return tuple(entry for entry in re.split(r"\n{2,}(?=@)", text.strip()) if entry)
 
 

@@ -123,7 +123,6 @@ def _ended(error: BaseException, arguments: argparse.Namespace) -> tuple[int, st
 
 
 def _told(error: BaseException) -> str:
-    """An exception and its place."""
     from continuation.step.verdict import sentence
 
     frames: Any = traceback.extract_tb(error.__traceback__)

@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def check_picture(option: str, file: str) -> None:
-    """Raise `UsageError` early if `file`, from `option`, cannot be written."""
+    """Raise `UsageError` early if the `file` of an `option` cannot be written."""
     from continuation.plot import require_matplotlib
 
     path = Path(file)

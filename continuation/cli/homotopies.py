@@ -142,7 +142,6 @@ def _as_text(title: str, path: Path) -> Iterator[str]:
     counts = ", ".join(f"{value} {name}" for name, value in path.counts.as_dict().items())
     yield f"work       {counts}; {path.seconds:.2g} s"
     if path.steps:
-        # Ten unknowns; --json prints all.
         yield f"end        lam = {path.endpoint.lam:.12g}"
         yield f"           y = {', '.join(f'{value:.12g}' for value in path.endpoint.y[:10])}"
 

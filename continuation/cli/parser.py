@@ -1,8 +1,7 @@
-"""A command: a function, its arguments, and how complaints name them.
+"""A command: a function, its arguments, and the names of these in complaints.
 
-Whatever is raised, `main` prints one line that begins with the argument as typed. A complaint begins with the name of
-a Python argument; a command's `names` say what was typed for it, and what for the archive that is read ("old") or
-written ("new").
+Whatever is raised, `main` prints one line, beginning with the argument as typed. A complaint names a Python argument; a
+command's `names` say what was typed for it, and what for the archive that is read ("old") or written ("new").
 """
 
 from __future__ import annotations
@@ -21,14 +20,12 @@ SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
 """Exit statuses."""
 
 Run = Callable[[argparse.Namespace], int]
-"""A command, from parsed arguments to exit status."""
-
 
 Argument = tuple[tuple[str, ...], dict[str, Any]]
 
 
 class UsageError(ValueError):
-    """A bad argument, as typed (``FILE``, ``--x0``): the command prints one line and ends with status 2."""
+    """A bad argument, as typed (``FILE``, ``--x0``): one line, and exit status 2."""
 
     def __init__(self, argument: str, complaint: object) -> None:
         super().__init__(f"{argument}: {' '.join(str(complaint).split())}")
@@ -59,7 +56,7 @@ def add_command(
     plugin: str = "",
     **options: Any,
 ) -> argparse.ArgumentParser:
-    """Add a command; `plugin`: the argument that names foreign code, whose exceptions are reported of it."""
+    """Add a command; `plugin`: the argument that names foreign code, to which its exceptions are attributed."""
     parser: argparse.ArgumentParser = subparsers.add_parser(name, **options)
     for typed, about in arguments:
         parser.add_argument(*typed, **about)

@@ -82,7 +82,7 @@ class AllgowerGeorg:
         distance = attempt.distance / (self.distance * attempt.h)
         angle = attempt.angle / self.angle
         factor = max(contraction**root, distance**root, angle)
-        # Roots would accept corrections of half a step at high order, and paths jump.
+        # Roots would accept corrections of half a step at high order: paths jump.
         if max(contraction, distance, angle) > self.deceleration:
             return Decision(False, attempt.h / min(max(factor, LEAST_SHRINK), 2.0 * self.deceleration), state)
         limited = max(factor, 1.0 / self.acceleration)
@@ -93,7 +93,7 @@ class AllgowerGeorg:
 
 @frozen
 class SeriesRange:
-    """A step as long as a series predictor's error bound allows; a failure halves it for that step alone."""
+    """A step as long as the series' error bound allows; a failure halves it for that step alone."""
 
     distance: float = field(default=1e-3, validator=POSITIVE)
     max_angle: float = field(default=1.4, validator=POSITIVE)

@@ -91,14 +91,14 @@ class Corrector(Protocol):
 
 
 POLISHING = Contraction()
-"""Enough halving chord steps from the tolerance to round-off."""
+"""Chord steps from the tolerance to round-off."""
 
 RESIDUAL_NOISE = 32.0
 """Largest round-off residual, in units of `Evaluator.round_off`: H sums many terms."""
 
 
 FAR_FROM_ROUND_OFF = RESIDUAL_NOISE * RESIDUAL_NOISE
-"""Such a residual deserves a factorisation."""
+"""A residual so large deserves a factorisation."""
 
 
 def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
@@ -108,9 +108,8 @@ def far_from_round_off(evaluator: Evaluator, u: Array) -> bool:
 
 
 def holds(evaluator: Evaluator, u: Array) -> bool:
-    """Whether H vanishes where Newton's increment is small.
-
-    The residual may be round-off, or noise with an increment that halves it.
+    """Whether H vanishes at a point where Newton's increment is small: the residual is round-off, or noise that the
+    increment halves.
     """
     if not far_from_round_off(evaluator, u):
         return True
@@ -123,12 +122,12 @@ def holds(evaluator: Evaluator, u: Array) -> bool:
 
 
 SAME_TERMS = 0.1
-"""A component that changes less keeps its round-off."""
+"""A component that changes by less keeps its round-off."""
 
 
 @define(eq=False)
 class _Terms:
-    """Noise level of H, sampled twice if it matters."""
+    """Noise level of H, sampled twice where it matters."""
 
     evaluator: Evaluator
     u: Array
@@ -138,7 +137,7 @@ class _Terms:
     least: Array
 
     def level(self, r: Array, most: float = np.inf) -> float:
-        """Residual relative to noise; above `most` no second sample."""
+        """The residual relative to noise; above `most` without a second sample."""
         found = largest(r / self.terms)
         if not self.twice and RESIDUAL_NOISE < found <= most:
             self.twice = True
@@ -161,10 +160,10 @@ def iterate(
     max_contraction: float,
     anchors: Sequence[Anchor] = (),
 ) -> Correction:
-    """Add increments until one is small and the residual agrees, or until they stop shrinking.
+    """Add increments until one is small and the residual agrees, or they stop shrinking.
 
     A ratio above `max_contraction` ends the iteration: wandering correctors find other branches. Near the tolerance,
-    where round-off spoils ratios, only the iteration limit counts. `direction` adds factorisations to `anchors`.
+    where round-off spoils ratios, only the limit of iterations counts. `direction` appends factorisations to `anchors`.
     """
     iteration, weights = Iteration(predicted, Contraction(max_iterations, max_contraction, noise=1.0)), point.weights
     r, found, done = predicted, False, False
@@ -180,9 +179,9 @@ def iterate(
             r, found = evaluator.residual(iteration.x), True
             done = size <= 1.0 and largest(r) <= tolerance.residual
         count, worst = iteration.count, iteration.worst
-        # Newton's error is the increment squared: tolerances below its root demand residuals at round-off.
+        # Newton's error is the increment squared: tolerances below this demand residuals at round-off.
         if done and tolerance.relative <= ROOT_OF_ROUND_OFF:
-            # Polish by the residual, as an increment may be large for a small component; one that stays is round-off.
+            # Polish until the residual is round-off: an increment may be large for a small component.
             before, least = np.inf, LEAST_TOLERANCE / np.sqrt(weights)
             for fresh in range(POLISHING.iterations):
                 u = iteration.x

@@ -19,17 +19,15 @@ from continuation.step.start import at_parameter
 from continuation.tolerance import Tolerance
 
 BY_KIND = (Kind.TURNING_POINT, Kind.BRANCH_POINT, Kind.KINK, Kind.HOPF)
-"""Kinds that define a condition."""
-
 NEAREST = 40
-"""Eigenvalues nearest to zero among which a Hopf pair is searched: others are far on the stable side."""
+"""Eigenvalues nearest to zero among which a Hopf pair is searched: the others are far on the stable side."""
 
 NEAR_AXIS = 0.1
 """Largest real part of a pair, relative to its modulus, for Newton's method."""
 
 
 def as_event(value: Any) -> Any:
-    """An event's kind, if it defines the condition, else the event."""
+    """The kind of an event that defines the condition, else the event."""
     kind = getattr(value, "kind", value)
     if isinstance(value, LocatedEvent):
         if kind == Kind.TURNING_POINT and value.name != "turning point":
@@ -55,7 +53,7 @@ def as_point(at: Any, name: str = "at") -> tuple[Array, float]:
 
 
 def as_size(size: Any, at: Any, u: Array) -> Array:
-    """Scales of the components of `u`: `size` if given, else from the metric of the event `at`, else their sizes."""
+    """Scales of the components of `u`: given, else from the metric of the event `at`, else their sizes."""
     if size is None:
         weights = getattr(at, "weights", None)
         return sizes(u) if weights is None else np.asarray(1.0 / np.sqrt(weights))

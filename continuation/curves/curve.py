@@ -26,7 +26,7 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 POINTS_KEPT = 6
-"""Cached points and members, which are needed repeatedly."""
+"""Points and members kept: they are needed again."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -132,7 +132,7 @@ class Curve:
         if self.event == Kind.BRANCH_POINT:
             here = self._at(y, self.mu)
             found = abs(float(here.base.solve(here.by_parameter, 0.0)[-1])) * np.abs(here.column).max()
-            # Where they persist, mu has no effect on H along the left null vector.
+            # Branch points persist if mu has no effect on H along the left null vector.
             if found > SIX_DIGITS * np.abs(here.by_parameter).max():
                 raise ValueError("family: expected branch points for every mu, as in symmetric problems; these part")
         return y, self.mu

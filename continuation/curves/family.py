@@ -1,4 +1,4 @@
-"""A homotopy with one attribute as a second parameter."""
+"""One attribute as a second parameter."""
 
 from __future__ import annotations
 

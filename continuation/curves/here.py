@@ -104,7 +104,6 @@ class CurvePoint:
         def solve(r: Array, rho: float) -> Array:
             z = whole.solve(np.concatenate([r[: n - 1], [0.0, 0.0], r[n - 1 :], np.zeros(int(hidden)), [rho]]))
             z = np.concatenate([z[: n - 1], z[n + 1 :]])
-            # The hidden unknown follows from the others.
             return np.delete(z, -2) if hidden else z
 
         return Solver(solve, lambda: base.sign * whole.sign)

@@ -24,8 +24,8 @@ from continuation.linear.nullspace import Bordered
 class Vanishing:
     """A function vanishes: a target value, a switch, or a monitor.
 
-    It takes (y, lam, mu), or (y, lam, tangent) if `along`. As M dt = -H''[t, .] for the tangent t, with M = [H_y,
-    H_lam] bordered, one solve with M' gives the derivative.
+    It takes (y, lam, mu), or (y, lam, tangent) if `along`. With M = [H_y, H_lam] bordered, the tangent t has M dt =
+    -H''[t, .], so one solve with M' gives the derivative.
     """
 
     calculus: Calculus

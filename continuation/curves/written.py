@@ -20,7 +20,7 @@ from continuation.jets import derivative_along
 from continuation.metric import Weighted
 
 DECIMALS = 6
-"""Decimals of c: machines differ in later digits."""
+"""Decimals of c, since machines differ in later digits."""
 
 
 @frozen(eq=False)

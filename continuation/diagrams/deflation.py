@@ -87,7 +87,6 @@ class Deflated:
         ways = (y - np.reshape(self.known, (-1, y.size))) / scale
         distances = np.linalg.norm(ways, axis=1)
         if not distances.all():
-            # M has a pole at a known solution.
             return float("inf"), np.zeros_like(y)
         ones = distances**-self.power
         shares = ones / (ones + self.shift) / distances**2

@@ -19,15 +19,15 @@ RAY_COSINE = 0.99
 """Least cosine between a ray and a branch along it: eight degrees."""
 
 STRAIGHT_ON = -1.0 + 1e-3
-"""Largest cosine between two rays of one branch; rays of multiple branch points are extrapolated."""
+"""Largest cosine between two rays of one branch; those of multiple branch points are extrapolated."""
 
 
 @define(eq=False)
 class Junction:
     """A point where branches meet.
 
-    `rays`, (k, N + 1): outward directions, two of them of the path that found it; `starts`: for the others; `used`:
-    those followed. `label`: empty until a finished branch contains it. `failed`: why rays are unknown.
+    `rays`, (k, N + 1): directions away, two of them of the path that found it. `starts`: for the others. `used`: rays
+    followed. `label`: empty until a finished branch contains the point. `failed`: why rays are unknown.
     """
 
     event: LocatedEvent

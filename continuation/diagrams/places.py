@@ -18,9 +18,9 @@ Item = TypeVar("Item")
 
 @define(eq=False)
 class PointIndex(Generic[Item]):
-    """Items at points, each with its metric; one point's locations agree in six digits, being polished to ten.
+    """Items at points, each with its metric; locations of one point agree in six digits, being polished to ten.
 
-    Items are sorted by a . u with a generic vector a, which the distance bounds: bisection finds candidates.
+    Items are sorted by a . u with a generic vector a; the distance bounds its change, so bisection finds candidates.
     """
 
     _axis: Array = field(factory=lambda: np.empty(0))

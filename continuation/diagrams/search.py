@@ -20,7 +20,7 @@ from continuation.diagrams.deflation import others, same_solution
 from continuation.diagrams.junctions import Junction, directions_of, meetings
 from continuation.diagrams.places import PointIndex
 from continuation.events.box import is_inside
-from continuation.metric import Inherited
+from continuation.metric import Automatic
 from continuation.path import LocatedEvent, Path
 from continuation.status import Status
 from continuation.step.options import Options
@@ -54,7 +54,7 @@ def _path(homotopy: Any, start: Any, direction: int, options: Options, before: A
     if start is not None:
         asked["start"] = start
     if before is not None and options.get("metric") is None and getattr(homotopy, "metric", None) is None:
-        asked["metric"] = Inherited(before=before)
+        asked["metric"] = Automatic(before=before)
     return trace(homotopy, **asked)
 
 
@@ -144,7 +144,7 @@ class BranchSearch:
         return self._polished(lam, list(Diagram(self.branches).at(lam)))
 
     def _polished(self, lam: float, guesses: list[Array]) -> list[Array]:
-        """Solve from each guess; keep it if Newton's method fails, as beside a fold."""
+        """Solve from each guess; keep a guess if Newton's method fails, as beside a fold."""
         found = []
         for guess in guesses:
             try:
@@ -219,7 +219,7 @@ class BranchSearch:
             self._follow([(j, ray) for j, ray in rays if j.generation == before], before + 1)
 
     def _follow(self, rays: list[tuple[Junction, int]], generation: int) -> None:
-        """Trace rays, those of one smooth branch one after the other, and add the branches."""
+        """Trace rays, those of one smooth branch in turn, and add the branches."""
         lines: list[tuple[Junction, list[int]]] = []
         left = {(j.number, ray): j for j, ray in rays}
         while left:

@@ -13,8 +13,7 @@ from continuation.point.projection import PathSolver
 from continuation.predictors import Knot
 
 SAME_POINT = ROUND_OFF_LEFT
-"""Distance, in tolerances, of equal points: planes and metrics differ, and condition numbers of a thousand are
-ordinary."""
+"""Distance, in tolerances, of equal points, found in other planes and metrics."""
 
 
 def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
@@ -28,8 +27,8 @@ def same_ray(solver: PathSolver, origin: Knot, point: Linearization) -> bool:
 def passes_start(solver: PathSolver, origin: Knot, arc: Arc) -> bool:
     """Whether the arc passes the start in the start's direction.
 
-    It must cross the plane orthogonal to the start's tangent from behind, and the corrected crossing must be the start.
-    In the start's own metric a path crosses once more near a turning point.
+    It must cross the plane orthogonal to the start's tangent from behind, at the start once corrected. In the start's
+    own metric a path would cross once more near a turning point.
     """
     weights = arc.a.weights
     v = origin.tangent / norm(weights, origin.tangent)

@@ -1,7 +1,7 @@
 """Whether a path goes to infinity while the parameter stops.
 
 On a pole y ~ (limit - lam)^-p, or a logarithm (p = 0), slopes grow like (limit - lam)^-(p + 1); three points give p and
-the limit. The model must predict the path, since fast growth is no proof: a pitchfork with an imperfection of 1e-14
+the limit. The model must predict the path, as fast growth is no proof: a pitchfork with an imperfection of 1e-14
 resembles a pole down to 1e-9 of the parameter's way.
 """
 
@@ -20,15 +20,15 @@ from continuation.point.linearization import Linearization, linearize
 from continuation.predictors import Knot
 
 DECADE = 10.0
-"""Least growth of the slope between marks. A prediction may err by the inverse part of the change; the model is tried
-further once the distance to the limit fell by two decades."""
+"""Least growth of the slope between marks. A prediction may err by a tenth of the change; the model is tried further
+once the distance to the limit fell by two decades."""
 
 ARRIVED = 1e-11
 """The model is followed to this distance from the limit, relative to the parameter's way, or to twice its round-off:
 only pitchforks with imperfections below 1e-16 come so near."""
 
 QUADRATIC_STEPS = 4
-"""Quadratic steps: from an error of a tenth, four give all digits."""
+"""Newton steps: from an error of a tenth, four give all digits."""
 
 LARGER = 2.0
 """Least growth of the largest unknown on a pole."""
@@ -49,8 +49,8 @@ def divergence(
     """Update the monitor with a point; also return the sentence that names the infinity, or "".
 
     `monitor`, empty at first: the parameter's way; the distance to the limit at which predictions began to hold, or 0;
-    parameter and slope at up to three marks. `stops`: the path's ends (component, value); one on the way excludes
-    infinity.
+    parameter and slope at up to three marks. `stops`: pairs (component, value) that end the path; one on the way
+    excludes infinity.
     """
     lam, moves = point.lam, float(point.tangent[-1])
     way, began, *marks = monitor or (0.0, 0.0)
@@ -105,7 +105,7 @@ def _met_further(
 
 
 def beyond_horizon(u: Array) -> str:
-    """The size of a point, as text."""
+    """The size of a point beyond HORIZON, as text, or ""."""
     return f"numbers of {largest(u):.0e}" if largest(u) >= HORIZON else ""
 
 

@@ -30,12 +30,12 @@ RESIDUAL_RATIO = 1e-3
 """Largest residual at the limit, relative to the first sample moved to the target."""
 
 ULPS = 8.0, -1021.0
-"""Perturbations, in ulps, that show round-off: two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
+"""Perturbations, in ulps, that show round-off; two, since lam / 1.001 is rounded alike at values 8 ulps apart."""
 
 WINDING_NUMBERS = (1, 2, 3, 4, 5, 6)
 
 SAMPLES_WITHOUT_GAIN = 3
-"""Samples without gain that stop the sampling."""
+"""The sampling stops after so many samples without gain."""
 
 ROUND_OFF_SPREAD = 10.0
 """Allowed growth of round-off in H from the last sample to the limit."""
@@ -48,7 +48,7 @@ AMPLIFICATION = 0.3, 10.0
 weights at t = 0."""
 
 EQUALLY_GOOD = 10.0
-"""Factor of the best error within which the smallest winding number wins: multiples fit later."""
+"""The smallest winding number within this factor of the best error wins: its multiples fit, too."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method is linear near a singular end."""
@@ -70,7 +70,7 @@ class SingularLimit:
 
 @frozen(eq=False)
 class Sample:
-    """A point, dy/dlam, and noise."""
+    """A point, its slope dy/dlam, and its noise."""
 
     u: Array
     slope: Array
@@ -99,7 +99,6 @@ class Endgame:
             if tracked is None:
                 break
             if not self._one_branch(here, tracked[0]):
-                # The path turns off: the limit is another branch's.
                 return None
             here, noise = tracked
             taken.append(_sample(here, noise))
@@ -119,8 +118,8 @@ class Endgame:
     def _one_branch(self, before: Linearization, after: Linearization) -> bool:
         """Whether two samples lie on one branch, as far as known.
 
-        Orientation is constant along a path, and differs on the other of two branches that nearly meet (Allgower and
-        Georg, Section 8.1). If it is unknown, the path between is examined, which detects five of six such ends.
+        A path keeps its orientation, which differs on the other of two branches that nearly meet (Allgower and Georg,
+        Section 8.1). If it is unknown, the arc between is compared with the path, which detects five of six such ends.
         """
         if before.orientation and after.orientation:
             return before.orientation == after.orientation
@@ -203,7 +202,7 @@ def _polynomial(taken: list[Sample], target: float, w: int) -> Callable[[float],
 
 
 def _limit(taken: list[Sample], target: float, weights: Array) -> SingularLimit:
-    """The best limit over winding numbers; its error is the change by a sample, and noise."""
+    """The best limit over winding numbers; its error is the change by one sample less, and noise."""
     ends = []
     noise = np.max([sample.noise for sample in taken], axis=0)
     for w in WINDING_NUMBERS:

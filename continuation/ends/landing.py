@@ -20,10 +20,10 @@ from continuation.rejection import Rejected, Rejection
 from continuation.step.stepper import Attempt, Stepper
 
 SINGULAR_SHARE = 1e-10
-"""Parameter's share of the tangent at which an end is singular."""
+"""Parameter's share of the tangent below which an end is singular."""
 
 LANDING = BorderedNewton(max_contraction=RELIABLE)
-"""Correctors at a fixed parameter must contract well: far solutions look as good."""
+"""Correctors at a fixed parameter must contract well: far solutions satisfy H as well."""
 
 
 @frozen(eq=False)
@@ -92,8 +92,7 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
     if before * after > 0.0:
         ends = float(arc.a.tangent[-1]), float(arc.b.tangent[-1])
         if ends[0] * ends[1] < 0.0 and before * ends[0] < 0.0:
-            # A fold on the target, to round-off, is the end; a path that crosses the target just before the fold ends
-            # there.
+            # A fold on the target, to round-off, is the end; else the crossing just before the fold.
             fold = next(zeros(solver, TurningPoint().monitor, arc, *ends), None)
             if fold is None:
                 return None
@@ -111,7 +110,7 @@ def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None
 def regular(solver: PathSolver, end: Linearization, near: Linearization) -> bool:
     """Whether H' has full rank at a point corrected with the factorisation of `near`.
 
-    If H_y vanishes at the target, as in lam F(y), anything solves H = 0. H' is factored unless refinement of a general
+    If H_y vanishes at the target, as in lam F(y), any y solves H = 0. H' is factored unless refinement of a general
     right-hand side contracts.
     """
     evaluator, r = solver.evaluator, generic_vector(end.u.size - 1)

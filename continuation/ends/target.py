@@ -26,10 +26,10 @@ ENDGAME = 1e-2
 """Relative distance to the target at which a singular end is sought."""
 
 RETRY_ENDGAME = 0.05
-"""Share of the distance of the last failed endgame for another: two samples."""
+"""Share of the distance of the last failed endgame at which another is tried: two samples."""
 
 CONDITIONED = 0.1
-"""Share of the path by which round-off may move an end: asymptotes satisfy any equation."""
+"""Share of the path by which round-off may move an end: near an asymptote any point satisfies H."""
 
 NEAR_ENOUGH = 30.0
 """Error bound, in tolerances, up to which no limit is needed."""
@@ -66,7 +66,7 @@ class ArcEnd:
 
 @frozen(eq=False)
 class Target:
-    """The target of a trace."""
+    """The target of a trace, and its other ends."""
 
     solver: PathSolver
     target: float | None
@@ -78,8 +78,6 @@ class Target:
         H' may lose rank on its boundary, where the target mostly lies; beyond the start's parameter H has no meaning.
         """
         return self.solver.max_step is not None
-
-    # Before a step
 
     def endgame_is_due(self, point: Linearization, state: State) -> bool:
         """Whether to seek a singular end: the target is near (much nearer after a failure), and a landing failed or the
@@ -99,8 +97,6 @@ class Target:
             return self._placed(Endgame(self.solver, self.target).limit(point), point)
         except EvaluationError:
             return None
-
-    # After a step
 
     def ending_of_arc(self, arc: Arc, state: State, landed: bool = False) -> ArcEnd:
         """The arc, cut at the path's end; `landed`: the arc was made to end on the target."""
@@ -162,7 +158,7 @@ class Target:
         return u
 
     def _placed(self, limit: SingularLimit | None, point: Linearization) -> SingularLimit | None:
-        """Add the distance of the singular point from the target, as far as H can tell, to a limit's error.
+        """Add to a limit's error how far, as H can tell, the singular point may be from the target.
 
         Between `point` and the limit y changes like c |lam - target|^(1/w).
         """
@@ -182,8 +178,8 @@ class Target:
 def off_by(evaluator: Evaluator, near: Linearization, u: Array) -> Array:
     """How far each component of an end can move before H exceeds round-off, shape (N + 1,).
 
-    The end moves along the tangent, and along the solutions of `near` for two samples of round-off with random signs,
-    until H is twice its allowed size.
+    The end moves along the tangent, and along solutions of `near` for two samples of round-off with random signs, until
+    H is twice its allowed size.
     """
     r = evaluator.residual(u)
     allowed = np.abs(r) + evaluator.round_off(u, r)

@@ -1,4 +1,4 @@
-"""Derivatives of a residual: dense, or by column groups."""
+"""Derivatives of a residual by products H' w: dense, or by groups of columns."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from continuation.evaluation.products import (
 )
 
 SPARSE_FROM = 64
-"""Number of unknowns from which sparse factorisations win."""
+"""Number of unknowns from which sparse factorisations are faster."""
 
 
 def check_derivative(answer: Any, n: int) -> None:
@@ -44,7 +44,7 @@ def check_derivative(answer: Any, n: int) -> None:
 class Derivative:
     """(H_y, H_lam) of a residual, by products.
 
-    One more product checks each sparse derivative; if it fails, the pattern grows.
+    One more product checks each sparse derivative; if it differs, the pattern is searched again.
     """
 
     residual: Residual
@@ -53,7 +53,7 @@ class Derivative:
     notes: set[str] = field(factory=set)
 
     def know(self, noise: Array) -> None:
-        """Adapt difference steps to noise, shape (N,)."""
+        """Adapt difference steps to the residual's noise, shape (N,)."""
         if isinstance(self.products, ByDifferences):
             self.products = self.products.over(noise)
 
@@ -82,7 +82,7 @@ class Derivative:
         terms, more = entries * directions[-1][pattern.columns], column * directions[-1, -1]
         gap = np.abs(product - more - np.bincount(pattern.rows, terms, pattern.n))
         size = np.bincount(pattern.rows, np.abs(terms), pattern.n) + np.abs(more)
-        # Outside the domain the pattern is not at fault.
+        # A NaN, outside the domain, is no fault of the pattern.
         allowed = self.products.agreement * size
         if (gap > np.maximum(allowed, self.products.agreement * float(allowed.max()))).any():
             return None
@@ -94,7 +94,7 @@ def _worth(pattern: Pattern | None) -> Pattern | None:
 
 
 def _looked_for(residual: Residual, u: Array) -> Pattern | None:
-    """The pattern near u, where no entry vanishes."""
+    """The pattern at a generic point near u, where no entry vanishes."""
     size = sizes(u)
 
     def at(v: Array) -> Array:
@@ -146,7 +146,7 @@ def from_residual(
 ) -> Derivative:
     """The best derivative: jets, else complex step, else central differences.
 
-    `pattern`: searched for if None and N is large. `notes` receives the method. `products`: the homotopy's own.
+    `pattern`: searched for if None and N is large. `notes`: receives the method. `products`: the homotopy's own.
     """
     y, lam = np.array(start[0], dtype=float, ndmin=1), float(start[1])
     u = np.append(y, lam)

@@ -14,7 +14,7 @@ class EvaluationError(ArithmeticError):
 
 
 class NotFiniteError(EvaluationError):
-    """The edge of the domain, an overflow, or a ValueError of the homotopy's own."""
+    """A value is not finite, or the homotopy raised ValueError: the edge of the domain, or an overflow."""
 
     rejection = Rejection.NO_VALUE
 
@@ -26,6 +26,6 @@ class SingularPointError(EvaluationError):
 
 
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """The error of a homotopy that raised another one."""
-    # A homotopy inside this one may have raised it.
+    """The `EvaluationError` for an exception of the homotopy."""
+    # A homotopy that wraps another passes it on.
     return error if isinstance(error, EvaluationError) else NotFiniteError(f"the {what} raised: {error}")

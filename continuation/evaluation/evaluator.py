@@ -34,10 +34,10 @@ from continuation.linear.dense import Dense
 from continuation.linear.silence import Silence, silent
 
 POINT_ULPS = 4.0
-"""Round-off of a point, in ulps."""
+"""Round-off assumed in a point, in ulps."""
 
 DERIVATIVES_KEPT = 2
-"""Derivatives kept: of both ends of an arc."""
+"""Both ends of an arc."""
 
 
 @frozen(eq=False, slots=False)
@@ -60,7 +60,7 @@ class CountedSystem:
         return z
 
     def approximate(self, r: Array, rho: float) -> Array:
-        """Unrefined solve, if iterations measure their residual."""
+        """Solve without refinement, for iterations that measure their residual."""
         return self.solve(r, rho, self.approximates)
 
     @cached_property
@@ -75,10 +75,10 @@ class CountedSystem:
 
 
 class Evaluator:
-    """Counted access to one homotopy.
+    """Counted access to one homotopy; `TypeError` or `ValueError` if it is wrong.
 
-    `methods`: BibTeX of substitute derivatives. `noise`: beyond round-off of u, shape (N,), or None. `TypeError` or
-    `ValueError` for a wrong homotopy.
+    `methods`: BibTeX of derivatives that replace missing ones. `noise`: of H beyond the round-off of u, shape (N,), or
+    None.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:
@@ -99,8 +99,9 @@ class Evaluator:
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
         for name in ("jacobian", "bordered", "differential"):
-            if not callable(getattr(homotopy, name, len)):
-                raise TypeError(f"homotopy: expected `{name}` to be a method, found {getattr(homotopy, name)!r}")
+            found = getattr(homotopy, name, None)
+            if not (found is None or callable(found)):
+                raise TypeError(f"homotopy: expected `{name}` to be a method, found {found!r}")
         self.homotopy = homotopy
         self.bindings += 1
         self.followed = True  # by jets
@@ -144,7 +145,7 @@ class Evaluator:
         return given_pattern(self.homotopy.sparsity, n) if offers(self.homotopy, SupportsSparsity) else None
 
     def called(self, y: Any, lam: Any) -> Any:
-        """The plug-in's residual, counted, also for jets; `y` of shape (N,)."""
+        """The plug-in's residual, counted; accepts jets."""
         self.counts.residuals += 1
         return self.homotopy.residual(y, lam)
 
@@ -171,18 +172,14 @@ class Evaluator:
             return math.nan
 
     def round_off(self, u: Array, residual: Array, least: float | Array = 0.0) -> Array:
-        """The effect of round-off in u on H, shape (N,), by two perturbations: terms may cancel in one.
-
-        `residual` is H(u).
+        """The effect of round-off in u on H(u) = `residual`, shape (N,), by two perturbations: in one, terms may
+        cancel.
         """
         terms: Array = np.maximum(self.look(u, residual, 1, least), self.look(u, residual, -1, least))
         return terms
 
     def look(self, u: Array, residual: Array, order: int = 1, least: float | Array = 0.0) -> Array:
-        """The estimate from one perturbation; order -1 gives another.
-
-        `least`: Least resolution of each component.
-        """
+        """`round_off` by one perturbation, of at least `least` in each component; order -1 takes another."""
         change = self.residual(u + np.maximum(np.spacing(np.abs(u)), least) * LOOK * generic(u.size)[::order])
         change -= residual
         dscal(POINT_ULPS / LOOK, change)
@@ -192,7 +189,7 @@ class Evaluator:
     def measure_noise(self, u: Array, w: Array, residual: Array) -> Array:
         """Measure and keep the noise; return it, or one ulp's effect if larger, shape (N,).
 
-        `w`: a direction of change, shape (N + 1,). `residual` is H(u).
+        `w`: a direction of change, shape (N + 1,). `residual`: H(u).
         """
         self.noise = None
         terms = self.round_off(u, residual)
@@ -200,19 +197,19 @@ class Evaluator:
             noise = noise_along(self.residual, u, w, residual, POINT_ULPS * terms)
         except EvaluationError:
             return terms
-        # More than the point's round-off has another source; `look` sees POINT_ULPS / LOOK of it.
+        # Noise above the round-off of u has another source, of which `look` sees the share POINT_ULPS / LOOK.
         self.noisy(np.where(noise > POINT_ULPS * terms, noise, 0.0))
         return np.maximum(terms / POINT_ULPS, noise)
 
     def noisy(self, noise: Array) -> None:
-        """Set the noise, shape (N,); zeros mean round-off alone."""
+        """Set the noise, shape (N,); zeros: none."""
         self.noise = noise if noise.any() else None
         if noise.size and isinstance(self._derivative, Derivative):
             self._derivative.know(noise)
 
     @property
     def derivative(self) -> Callable[[Array, float], tuple[Matrix, Array]]:
-        """The plug-in's `jacobian`, else from the residual."""
+        """The plug-in's `jacobian`, else one made from the residual."""
         if self._derivative is None:
             u = self._given()
             start = u[:-1], float(u[-1])
@@ -235,7 +232,6 @@ class Evaluator:
         return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
 
     def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
-        """H_y and H_lam, new or kept."""
         place = u.tobytes()
         if place in self._kept:
             return self._kept[place]
@@ -252,7 +248,6 @@ class Evaluator:
             self._checked = True
         while len(self._kept) >= DERIVATIVES_KEPT:
             del self._kept[next(iter(self._kept))]
-        # Plug-ins may reuse their arrays.
         H_y = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
         self._kept[place] = H_y, np.array(answer[1], dtype=float)
         return self._kept[place]

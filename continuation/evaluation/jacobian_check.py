@@ -17,7 +17,6 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.evaluation.products import Residual, difference_along, exact
 
 Product = Callable[[Array], Array]
-"""w -> H'(u) w."""
 
 
 @frozen

@@ -13,10 +13,10 @@ NOISE_LOOKS = 4.0
 """Factor from one random sample to the largest of many."""
 
 LOOK = 64.0
-"""Least distance of samples, in ulps, whose own rounding is then small."""
+"""Least distance of samples, in ulps: the rounding of their places is then small."""
 
 NOISE_PLACES = np.array([0.0, 1.13, 1.92, 3.07, 4.21, 4.98, 6.09, 7.16, 7.94])
-"""Sample parameters. Even places hid the noise of 17 of 150 rings that are zero by symmetry."""
+"""Sample parameters. Even spacing hid the noise of 17 of 150 rings that are zero by symmetry."""
 
 
 def _divided_differences(places: Array, order: int) -> Array:
@@ -31,21 +31,21 @@ def _divided_differences(places: Array, order: int) -> Array:
 _FOURTH = _divided_differences(NOISE_PLACES, 4)
 
 NOISE_REACH, NOISE_FINER, NOISE_TRIES = 1e-5, 1e-3, 3
-"""First sample distance, in lengths of a turn; its factor, by which smooth fourth differences shrink 1e12 times; limit
-of distances."""
+"""First sample distance, in lengths of a turn; its factor, by which smooth fourth differences shrink 1e12 times; most
+distances."""
 
 NOISE_STEADY = 30.0
-"""Agreement of noise at two distances, each the largest of five samples."""
+"""Largest ratio of noise at two distances, each the largest of five samples."""
 
 WIDENED, ENDLESS = 4.0, 1e150
 """Accuracy factor of `allowed_along`'s lengths, and the longest."""
 
 
 def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Array, enough: Array) -> Array:
-    """The noise of each equation, shape (N,): differences along w that do not shrink.
+    """The noise of each equation, shape (N,): fourth differences along w that do not shrink with the distance.
 
-    Method: More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33, 2011. `u`, `w` of shape (N + 1,).
-    `here`, shape (N,): residual(u). `enough`, shape (N,): smaller noise need not be steady.
+    Method: More and Wild, Estimating computational noise, SIAM J. Sci. Comput. 33, 2011. `u`, `w` have shape (N + 1,).
+    `here`: residual(u). `enough`, shape (N,): smaller noise need not be steady.
     """
     least, noise, steady = np.full(here.size, np.inf), np.zeros(here.size), np.zeros(here.size, dtype=bool)
     near = float(np.median((np.spacing(np.abs(u)) / np.abs(w))[w != 0.0]))
@@ -56,21 +56,20 @@ def noise_along(residual: Callable[[Array], Array], u: Array, w: Array, here: Ar
         # Equal samples are no evidence.
         found[(samples == here).all(axis=0)] = np.inf
         now = (least <= NOISE_STEADY * found) & (least < np.inf) | (found <= enough)
-        # Where the differences no longer shrink, those that are nearer have less of the function: they may be larger.
+        # Of differences that no longer shrink, the nearer contain less of the function, even if larger.
         noise = np.where(now & ~steady, np.where(found < np.inf, found, least), noise)
         least, steady = np.minimum(least, found), steady | now
         if steady.all():
             break
-    # Still shrinking: no noise.
     return noise
 
 
 def allowed_along(
     residual: Callable[[Array], Array], u: Array, way: Array, allowed: Array, begin: float = 1.0
 ) -> float:
-    """How far along a direction a residual stays within `allowed`, up to a factor WIDENED.
+    """How far along `way` a residual stays within `allowed`, up to a factor WIDENED; at most ENDLESS.
 
-    0: nowhere; ENDLESS: everywhere. Power laws extrapolate lengths. `begin`: first guess.
+    Power laws extrapolate lengths, from `begin`.
     """
     low, high, over, power = 0.0, np.inf, np.inf, 2.0
     length, factor, allowed = begin, WIDENED, np.maximum(allowed, np.finfo(float).tiny)

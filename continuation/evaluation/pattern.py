@@ -15,8 +15,8 @@ from continuation.arrays import Array, Matrix, generic_vector
 from continuation.linear import Banded
 
 BLOCKS_TELL = 64
-"""Blocks that show sparsity: eight random entries a row touch 12 % of 64, nearly half of 16. A matrix whose rows touch
-half is full."""
+"""Blocks that show sparsity: eight random entries a row touch 12 % of 64, nearly half of 16. Half means a full
+matrix."""
 
 Places = NDArray[np.signedinteger[Any]]
 
@@ -29,7 +29,7 @@ def generic(n: int) -> Array:
 
 
 Touched = Callable[[Places, int], NDArray[np.bool_]]
-"""Maps labels of unknowns, shape (N,), and their number k to the equations with each label, shape (N, k)."""
+"""Maps labels of unknowns, shape (N,), and their number k to the equations that depend on each label, shape (N, k)."""
 
 
 def grouped(rows: Places, columns: Places, n: int, count: int) -> Places:
@@ -65,7 +65,7 @@ class Pattern:
 
     @cached_property
     def directions(self) -> Array:
-        """Sums of unit vectors of each group, the parameter's, and a check vector: (k, n + 1)."""
+        """Sums of unit vectors by group, the parameter's, and a vector for the check: (k, n + 1)."""
         unit = np.zeros((self.count + 2, self.n + 1))
         unit[self.groups, np.arange(self.n)] = 1.0
         unit[-2, -1] = 1.0
@@ -91,7 +91,7 @@ class Pattern:
 
     @cached_property
     def banded(self) -> bool:
-        """Whether half of the band is full."""
+        """Whether entries fill half of the band."""
         return (sum(self._band) + 1) * self.n <= 2 * self.rows.size
 
     @cached_property
@@ -123,7 +123,7 @@ def pattern_of(rows: Any, columns: Any, n: int) -> Pattern:
 
 
 def found(touched: Touched, n: int) -> Pattern | None:
-    """A matrix' pattern, or None if full or too expensive.
+    """A matrix' pattern, or None if it is full or costs too much.
 
     Blocks of columns are halved, those without common equations together (Griewank and Mitev, Mathematical Programming
     93, 2002).

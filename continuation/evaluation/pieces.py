@@ -12,13 +12,12 @@ from continuation.arrays import Array, largest
 from continuation.evaluation.products import USUAL_STEP, Exact, exact
 
 Signs = tuple[int, ...]
-"""Signs -1 or +1 of all switches, which name a piece."""
+"""The sign -1 or +1 of each switch: the name of a piece."""
 
 REMEMBERED = 64
-"""Pieces kept; kinks need the same few again."""
+"""Pieces kept: kinks need the same few."""
 
 NAMES = ("jacobian", "bordered", "differential", "taylor")
-"""Capabilities that the map takes from its pieces."""
 
 
 class SwitchError(ArithmeticError):
@@ -82,10 +81,7 @@ class Pieces:
 
 
 class WholeMap:
-    """All pieces as one homotopy, with the first piece's capabilities.
-
-    `u`, shape (N + 1,): Start.
-    """
+    """All pieces as one homotopy that starts at u, shape (N + 1,), with the capabilities of the piece there."""
 
     def __init__(self, homotopy: Any, u: Array) -> None:
         self._pieces = Pieces(homotopy)

@@ -17,7 +17,7 @@ Residual = Callable[..., Any]
 """``residual(y, lam) -> (N,)``."""
 
 AGREEMENT = float(np.sqrt(SIX_DIGITS))
-"""Largest error of differences, relative to their terms."""
+"""Largest error of differences, relative to the terms."""
 
 
 @frozen
@@ -36,7 +36,7 @@ class Exact:
     even: ClassVar[float] = 1.0
 
     def scale(self, u: Array) -> Array:
-        """Ones: units do not matter."""
+        """Ones: products need no units."""
         return np.ones_like(u)
 
     def __call__(self, residual: Residual, u: Array, directions: Array) -> Array:
@@ -73,7 +73,7 @@ BY_JETS = Exact("jets", _by_jets, (GRIEWANK_WALTHER,), _all_by_jets)
 """Truncated Taylor arithmetic."""
 
 BY_COMPLEX_STEP = Exact("complex step", _by_complex_step, (SQUIRE_TRAPP,))
-"""One complex residual a direction (Squire and Trapp, SIAM Review 40, 1998)."""
+"""One complex residual for each direction (Squire and Trapp, SIAM Review 40, 1998)."""
 
 
 def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
@@ -83,15 +83,15 @@ def given(differential: Callable[[Array, float, Array], Array]) -> Exact:
         y, lam = u[:-1], float(u[-1])
         return np.stack([np.asarray(differential(y, lam, w), dtype=float) for w in directions], axis=1)
 
-    # They may be differences.
+    # The homotopy's products may be differences.
     return Exact("differential", function, agreement=AGREEMENT)
 
 
 USUAL_STEP = float(np.cbrt(EPS))
-"""Usual best step, relative to a component's size (or 1); its square is a difference's accuracy."""
+"""Best step of a smooth function, relative to a component's size (or 1); its square is the difference's accuracy."""
 
 DIFFERENCE_STEPS = USUAL_STEP * 100.0 ** np.arange(2, -5, -1)
-"""Further steps, since origin and units are arbitrary."""
+"""Steps tried, since origin and units are arbitrary."""
 
 
 def sizes(u: Array) -> Array:
@@ -100,7 +100,6 @@ def sizes(u: Array) -> Array:
 
 
 def _central(residual: Residual, u: Array, w: Array) -> Array:
-    """Half of the change from u - w to u + w."""
     ahead, behind = u + w, u - w
     # Residuals may reuse their arrays.
     change = np.array(residual(ahead[:-1], float(ahead[-1]))) - residual(behind[:-1], float(behind[-1]))
@@ -108,16 +107,15 @@ def _central(residual: Residual, u: Array, w: Array) -> Array:
 
 
 def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -> tuple[Array, Array]:
-    """Central differences along w at all steps, (steps, N), and relative changes, (steps - 1, N).
+    """Central differences along w at all steps, (steps, N), and their relative changes, (steps - 1, N).
 
-    `rows`, shape (N,): least unit of a change; else noise decides for equations constant along w.
+    `rows`, shape (N,): least unit of a change; without, noise decides for equations constant along w.
     """
 
     def at(h: float) -> Array:
         try:
             return _central(residual, u, h * w) / h
         except (ArithmeticError, ValueError):
-            # Outside the domain.
             return np.full(u.size - 1, np.nan)
 
     with np.errstate(all="ignore"):
@@ -125,7 +123,7 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
         one, other = found[:-1], found[1:]
         size = np.maximum(np.abs(one) + np.abs(other), rows)
         changes = np.abs(one - other) / np.where(size > 0.0, size, 1.0)
-    # Short steps in single precision show no change: zeros do not agree.
+    # Too short steps show no change: equal zeros are no agreement.
     changes[(one == 0.0) & (other == 0.0) & (found != 0.0).any(axis=0)] = 1.0
     changes[~np.isfinite(changes)] = 1.0
     # Closer agreement than a difference's accuracy is chance.
@@ -143,7 +141,7 @@ def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, flo
 
 
 def _best(changes: Array) -> int:
-    """The step with the least change, among equals that nearest to the usual one."""
+    """The step with the least change; of equals, the nearest to the usual one."""
     return min(range(changes.size), key=lambda k: (changes[k], abs(k - 1))) + 1
 
 
@@ -151,8 +149,8 @@ def _best(changes: Array) -> int:
 class ByDifferences:
     """Central differences, eight to ten digits.
 
-    `unit`, `steps`, of shape (N + 1,): steps relative to units, or to larger components. `usual`, shape (N,): each
-    equation's change as all components move by their sizes.
+    `steps`, relative to the larger of `unit` and component, of shape (N + 1,). `usual`, shape (N,): each equation's
+    change as all components move by their sizes.
     """
 
     unit: Array
@@ -163,7 +161,7 @@ class ByDifferences:
     references: tuple[str, ...] = ()
 
     def over(self, noise: Array) -> ByDifferences:
-        """Differences whose steps balance noise, shape (N,), and curvature."""
+        """Differences with steps that balance noise, shape (N,), and curvature."""
         known = self.usual > 0.0
         least = float(np.cbrt((noise[known] / self.usual[known]).max(initial=0.0)))
         return evolve(self, steps=np.maximum(self.steps, min(least, float(DIFFERENCE_STEPS[0]))))
@@ -174,7 +172,7 @@ class ByDifferences:
         return np.asarray(np.median(self.steps) / self.steps)
 
     def scale(self, u: Array) -> Array:
-        """Difference steps of the components at u, as rounding leaves them, shape (N + 1,)."""
+        """Difference steps at u, as rounding leaves them, shape (N + 1,)."""
         reach = self.steps * np.maximum(self.unit, np.abs(u))
         return np.asarray(0.5 * ((u + reach) - (u - reach)))
 
@@ -190,7 +188,7 @@ class ByDifferences:
 def by_differences(residual: Residual, u0: Array, groups: Any = None) -> ByDifferences:
     """Differences with the best step for each component at `u0`.
 
-    `groups`, shape (N + 1,): components that move together and have one step; default: none.
+    `groups`, shape (N + 1,): labels of components with a common step; default: none.
     """
     steps, size = np.empty_like(u0), sizes(u0)
     unit = size.copy()
@@ -202,7 +200,7 @@ def by_differences(residual: Residual, u0: Array, groups: Any = None) -> ByDiffe
             changes = _trials(residual, u0, np.where(own, reach, 0.0), usual)[1]
             seen = changes.sum(axis=1)
             steps[own], unit[own] = DIFFERENCE_STEPS[_best(seen)], reach[own]
-            # A component that is almost zero has no unit: try longer steps that agree as well.
+            # An almost zero component has no unit: try longer steps that agree as well.
             longer = own & (size < USUAL_STEP) & (reach < 1.0)
             longer &= (seen[0] <= seen.min()) | (changes.min() == 1.0)
             if not longer.any():
@@ -215,7 +213,7 @@ Products: TypeAlias = Exact | ByDifferences
 
 
 def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
-    """Whether a product with w agrees with a difference in each row: ``abs`` is wrong on complex numbers."""
+    """Whether a product with w agrees with a difference in each row; ``abs`` of complex numbers does not."""
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("error", np.exceptions.ComplexWarning)
@@ -226,15 +224,14 @@ def agree(products: Exact, residual: Residual, u: Array, w: Array) -> bool:
     expected = expected[np.isfinite(expected).all(axis=1)]
     if not len(expected) or found.shape != expected.shape[1:]:
         return False
-    # A zero row is measured by the others, though each has its own unit.
+    # A zero row takes the others' unit.
     size = AGREEMENT * (np.abs(found) + np.abs(expected))
     least = AGREEMENT * size.max(axis=1, initial=0.0, keepdims=True)
     return bool((np.abs(found - expected) <= np.maximum(size, least)).any(axis=0).all())
 
 
 def exact(residual: Residual, u: Array, w: Array) -> Exact | None:
-    """Products H' v without truncation error, by jets, else by complex steps.
-
-    None if neither agrees with differences of the residual at u along w.
+    """Products H' v without truncation error, by jets, else complex steps; None if neither agrees with differences
+    along w.
     """
     return next((products for products in (BY_JETS, BY_COMPLEX_STEP) if agree(products, residual, u, w)), None)

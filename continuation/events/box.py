@@ -15,7 +15,7 @@ from continuation.events.monitors import Event, TargetValue
 from continuation.status import Kind
 
 Box = Mapping[str | int, tuple[float | None, float | None]]
-"""Maps ``"lam"``, ``"y"`` (all unknowns), an index or a name to (low, high); None means open."""
+"""Maps ``"lam"``, ``"y"`` (all unknowns), an index or a name to (low, high); None: open."""
 
 
 @frozen

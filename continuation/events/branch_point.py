@@ -13,7 +13,7 @@ from continuation.status import Kind
 class BranchPoint:
     """Two branches cross: H' loses one rank.
 
-    The tracer always watches for it; list it among the events to stop there.
+    The tracer always watches for it; list it to stop there.
     """
 
     terminal: int = field(default=1, validator=integer(0))

@@ -1,7 +1,7 @@
 """Branches that cross an arc, by one factorisation at its beginning.
 
 With bordered matrices M_a and M_c of two points, M_a + t (M_c - M_a) is singular where 1 / t is an eigenvalue of C = I
-- M_a^{-1} M_c: a real eigenvalue above one means a crossing. The determinant shows parity only. Parameters t are exact
+- M_a^{-1} M_c: a real eigenvalue above one means a crossing; the determinant shows parity only. Parameters t are exact
 on a straight branch if H is affine in the parameter.
 """
 
@@ -24,15 +24,15 @@ EIGENVALUE_ACCURACY = 0.05
 """Relative, of real and imaginary parts; Newton's method refines the crossing."""
 
 OUTSIDE_SPACE = 0.1
-"""If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm.
-Otherwise a tenth of 400 crossings just behind an arc is missed."""
+"""If the last dimension leads out of the space by more, relative to the least eigenvalue wanted, the next must confirm;
+otherwise a tenth of 400 crossings just behind an arc is missed."""
 
 ROUNDING = ROOT_OF_ROUND_OFF
 """Smaller eigenvalues, relative to the matrix, may be round-off of a nearly defective pair (Wilkinson, The Algebraic
 Eigenvalue Problem, Section 2.22), as near a pole."""
 
 SAME = math.sqrt(SIX_DIGITS)
-"""Relative distance of equal eigenvalues, and singular value of dependent unit vectors: these have half the
+"""Relative distance of equal eigenvalues, and singular value of dependent unit vectors, which have half the
 eigenvalues' digits."""
 
 
@@ -45,8 +45,7 @@ def changes(
     start: Array,
     accuracy: float = EIGENVALUE_ACCURACY,
 ) -> tuple[list[float], Array]:
-    """Return the real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors in the metric,
-    as columns.
+    """Return the real eigenvalues of C above `most` or below `least`, ascending, and unit eigenvectors, as columns.
 
     `apply`: v -> H' v at the other point. `border`, shape (N + 1,): M's last row, the tangent there in the dual metric,
     so that turns give complex eigenvalues. `start`, shape (N + 1,): Arnoldi's first vector; eigenvectors orthogonal to
@@ -58,18 +57,19 @@ def changes(
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
-    """Ranks lost at a `place` of `changes`. One Krylov space holds one vector of each eigenspace, so several starts
-    serve.
+    """The ranks that H' loses at a parameter `place` of `changes`.
+
+    A Krylov space holds one vector of each eigenspace, so several starts serve.
     """
     found, lost = np.empty((a.u.size, 0)), 0
     for k in range(a.u.size):
         start = np.cos(1.0 + k + (1.7 + k) * np.arange(float(a.u.size)) ** 2)
         values, vectors, scale = _eigenvalues(a, apply, border, 0.5 / place, -np.inf, start, SAME**2)
         near = np.abs(values * place - 1.0) < SAME
-        # Eigenvalues that vanish at different rates are apart beside the point, and one start has all their vectors.
+        # Beside the point, eigenvalues that vanish at different rates are apart: one start has all their vectors.
         found, before = np.column_stack((found, vectors[:, near])), lost
         lost = int(np.count_nonzero(np.linalg.svd(_unit(found, scale), compute_uv=False) >= SAME))
-        # One start may have no part along an eigenvector; one of two has.
+        # One of two starts has a part along the eigenvector.
         if (near.any() and lost == before) or k > lost:
             break
     return lost
@@ -93,7 +93,7 @@ def _eigenvalues(
 ) -> tuple[Array, Array, Array]:
     """Eigenvalues; vectors, in units of the unknowns; the scale of Arnoldi's method.
 
-    `passed`: tell the real parts, beyond one, of complex pairs too.
+    `passed`: add the real parts, beyond one, of complex pairs.
 
     An unknown with too small a unit would dominate every eigenvector: the first product gives a scale in which it does
     not (Chen and Demmel, Linear Algebra Appl. 309, 2000, Section 3).
@@ -143,7 +143,7 @@ def _eigenvalues(
         if (z.real > right or z.real < left) and abs(z) > rounding:
             # Off the path the equal eigenvalues of a multiple point may be a complex pair.
             (real if abs(z.imag) <= max(e, EIGENVALUE_ACCURACY * abs(z)) else pairs).append(j)
-    # Where one has crossed, two others may have crossed and met behind.
+    # If one has crossed, two others may have crossed and become a pair.
     crossed = passed and any(values[j].real > 1.0 for j in real)
     wanted = real + [j for j in pairs if crossed and values[j].real > 1.0]
     return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted] / scale[:, None], scale
@@ -152,7 +152,7 @@ def _eigenvalues(
 def _closed(H: Array, left_over: float, right: float) -> bool:
     """Whether the Krylov space of C misses no eigenvalue above `right`.
 
-    `H`: C projected on the space; `left_over`: size of what C adds to it. That returns multiplied by the entries of C.
+    `H`: C projected on the space; `left_over`: size of what C adds to it, which comes back multiplied by entries of C.
     """
     return left_over * max(right, float(np.abs(H).max())) <= OUTSIDE_SPACE * right * right
 

@@ -1,8 +1,8 @@
 """Zeros of a function on an accepted arc, for events, targets, faces and switches.
 
-The arc's guide models the function without evaluating H. An arc has no zero if the model keeps the ends' sign and half
-of the smaller end value, one zero if the ends differ in sign and the model changes sign once: secants find it on the
-path. Other arcs are divided.
+The arc's guide models the function without evaluations of H. An arc has no zero if the model keeps the ends' sign and
+half of the smaller end value. It has one if the ends differ in sign and the model changes sign once: secants find it on
+the path. Other arcs are divided.
 """
 
 from __future__ import annotations
@@ -28,21 +28,21 @@ Function = Callable[[Array, Array], float]
 """A function of point and tangent, continuous along the path."""
 
 THREE_DIGITS = math.sqrt(SIX_DIGITS)
-"""Those of a model: the step of its difference quotient, in parts; a bracket that closes on a larger value, relative to
-its first ones, holds a jump."""
+"""Digits of a model: relative step of its difference quotient; a bracket that closes on a larger value, relative to its
+first ones, holds a jump."""
 
 MONITOR_PLACES = 17
 """Samples of the model; a cubic turns at most twice."""
 
 CONVERGES = 8.0
-"""Least fall of the model's error at half the length; a cubic's falls sixteenfold. Without it functions that cubics
-model badly, as a determinant beside a fold, cost 256 divisions of an arc."""
+"""Least fall of the model's error at half the length; a cubic's falls sixteenfold. Without it functions like a
+determinant beside a fold, which cubics model badly, cost 256 divisions of an arc."""
 
 DIVISIONS = 8
 """Most divisions of an arc."""
 
 PASSES = 60
-"""Every other one bisects, down to round-off."""
+"""Most evaluations of `root`: every other one bisects, down to round-off."""
 
 
 def zero_between(function: Callable[[float], float], low: float, high: float, **options: float) -> float | None:
@@ -54,7 +54,7 @@ def zero_between(function: Callable[[float], float], low: float, high: float, **
 
 
 def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
-    """Whether a function changes sign on an arc, or falls below half of both ends."""
+    """Whether a function changes sign on an arc, or falls below half of both end values."""
     if gb == 0.0 or ga * gb < 0.0:
         return True
     sign = math.copysign(1.0, ga)
@@ -77,9 +77,9 @@ def _least(places: Sequence[float], values: Sequence[float]) -> float:
 
 @frozen(eq=False)
 class _Part:
-    """A part of an arc, with the function's values and its model from `low` to `high`.
+    """A part of an arc, with the function's end values and its model from `low` to `high`.
 
-    `error`: of the model of twice the length. `known`: whether errors shrink like a cubic's, at least eightfold.
+    `error`: of the model of twice the length. `known`: whether errors shrink at least eightfold.
     """
 
     a: Linearization
@@ -185,7 +185,7 @@ def root(
     scale = max(abs(a[1]), abs(b[1]))
     if 0.0 in (a[1], b[1]):
         return a[0] if a[1] == 0.0 else b[0]
-    # An end may be zero but for round-off, where the arc before had its zero.
+    # The arc before may have had its zero at an end, to round-off.
     best = (a[0], scale)
     last, stalled = None, 0
     chord = (b[1] - a[1]) / (b[0] - a[0])
@@ -204,8 +204,8 @@ def root(
         elif not slope * chord > 0.0:
             slope = chord
         step = -now[1] / slope if slope else math.inf
-        # Half of the digits are enough if a pass did not halve the value where the slope is at least half the chord's,
-        # so that the zero is simple; else if two did not.
+        # Half of the digits are enough if a pass did not halve the value; at a slope below half the chord's, where the
+        # zero may be double, if two did not.
         small = abs(best[1]) <= ROOT_OF_ROUND_OFF * scale and stalled > (abs(slope) < HALVING * abs(chord))
         if now[1] == 0.0 or small or abs(step) <= enough or b[0] - a[0] <= enough:
             break

@@ -22,7 +22,7 @@ from continuation.metric import inner, norm
 from continuation.point.linearization import SOLVED, linearize
 
 LOST_RANKS = 3
-"""Lost ranks that are resolved: a sphere in four dimensions."""
+"""Most lost ranks: a sphere in four dimensions."""
 
 STEPS = 30
 """Most steps of an iteration."""
@@ -34,8 +34,8 @@ NOISE = 1e-11
 """Round-off of a direction, relative to its largest component."""
 
 BENT = 0.1
-"""Ratio of higher to linear terms off the path: branches of unknowns that stand still along the path, and so have no
-unit, bend by a few degrees within the sphere."""
+"""Ratio of higher to linear terms off the path, which gives unknowns that stand still along the path a unit: their
+branches bend by a few degrees within the sphere."""
 
 
 class Unresolved(ArithmeticError):
@@ -66,7 +66,7 @@ class Reduced:
 
     @classmethod
     def beside(cls, evaluator: Evaluator, u: Array, extent: Array, heading: Array) -> Reduced:
-        """In units of the path, by two factorisations."""
+        """The equations in units of the path, by two factorisations."""
         _, sizes = scales(evaluator, extent, (u, u + 0.1 * heading))
         matrix = ScaledDerivative(evaluator, extent, sizes).at(u)
         kernel, left = kernels(matrix)
@@ -87,7 +87,7 @@ class Reduced:
         return float(np.linalg.norm(bent)) / turned if turned else np.inf
 
     def at(self, a: Array) -> tuple[Array, Array]:
-        """The point over the kernel, from u, and g."""
+        """The displacement over the kernel, and g."""
         n, size = self.sizes.size, float(np.linalg.norm(a))
         w, g = self.kernel @ a, np.zeros(self.left.shape[1])
         for _ in range(STEPS):
@@ -118,7 +118,7 @@ class Polynomials:
 
     @classmethod
     def of(cls, reduced: Reduced, radius: float) -> Polynomials:
-        """Fit `reduced` by least squares at points of two spheres around zero, of `radius` and of half of it."""
+        """Fit `reduced` by least squares at points of two spheres around zero, of `radius` and half of it."""
         m = reduced.kernel.shape[1]
         sums = [c for degree in (2, 3, 4) for c in combinations_with_replacement(range(m), degree)]
         powers = np.array([[c.count(i) for i in range(m)] for c in sums])
@@ -191,7 +191,7 @@ def leaving(evaluator: Evaluator, u: Array, heading: Array, weights: Array, step
             bend = reduced.bend(heading / extent, step)
             if not resting.any() or not 0.0 < bend < np.inf or 0.1 * BENT <= bend <= 10.0 * BENT:
                 break
-            # This suits cubic terms; for quadratic ones it halves the extent's error, in digits.
+            # Exact for cubic terms; for quadratic ones it halves the extent's error, in digits.
             extent = np.where(resting, extent * np.sqrt(BENT / bend), extent)
         branches = _branches(Polynomials.of(reduced, step))
     except Unresolved:
@@ -234,7 +234,7 @@ def _branch(near: Polynomials, a: Array) -> Leaving:
 
 
 def still(v: Array, weights: Array) -> Array:
-    """A direction without round-off, which a path would take for scale."""
+    """A direction without round-off, which would look like a path's scale."""
     size = np.abs(v) * np.sqrt(weights)
     return np.where(size > NOISE * size.max(), v, 0.0)
 

@@ -22,7 +22,7 @@ SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
 def found_by_events(
     solver: PathSolver, events: tuple[Any, ...], arc: Arc, found: list[tuple[int, Linearization]]
 ) -> tuple[list[tuple[int, Linearization]], bool]:
-    """Points that the `continuation.homotopy.Watcher`s among the events find, and whether all of these accept the arc.
+    """Points that the `continuation.homotopy.Watcher`s among the events find, and whether these accept the arc.
 
     `found`: the other events' points, each with the event's index.
     """
@@ -41,7 +41,7 @@ def monitored(event: Event, point: Linearization) -> float:
 
 
 def _vanishes(event: Event, point: Linearization, first: float, last: float) -> bool:
-    """Whether a monitor is zero to half of the digits, as directions at a branch point are."""
+    """Whether a monitor vanishes to half of the digits, which directions at a branch point have."""
     return abs(event.monitor(point.u, point.tangent)) <= ROOT_OF_ROUND_OFF * max(abs(first), abs(last))
 
 
@@ -55,7 +55,7 @@ def scan_events(
     """Events on the arc in order, without those of a `Watcher`, and end values of monitors.
 
     A zero at the beginning was counted before; the sign behind it replaces it. A zero at the `branch_point` on the arc
-    is that point, since corrections beside it lose their digits.
+    is that point: corrections beside it lose digits.
     """
     found: list[tuple[int, Linearization]] = []
     values = []
@@ -75,7 +75,7 @@ def scan_events(
         resolution = getattr(event, "resolution", None)
         if resolution is not None:
             if noise is None:
-                # A tangent is refined to REFINED of its length, which a component that stands still may have.
+                # A component that stands still may have the error REFINED of the whole tangent.
                 noise = solver.noise_by_component(arc.a) + REFINED * arc.length / np.sqrt(arc.a.weights)
             # Round-off at both ends is no crossing.
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
@@ -116,7 +116,7 @@ def up_to(
     found: list[tuple[int, Linearization]],
     branch_point: Linearization | None,
 ) -> list[tuple[int, Linearization]]:
-    """Events up to the last of `found`, where the arc was cut: this end may show more than the whole arc's did."""
+    """Events up to the last of `found`, where the arc was cut: the new end may show more of them."""
     kept = found
     for i, event in enumerate(events):
         known = [pair for pair in found if pair[0] == i]

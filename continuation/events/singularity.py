@@ -29,10 +29,7 @@ SECOND = USUAL_STEP
 
 @frozen(eq=False)
 class SimpleBranchPoint:
-    """A zero of H where H' has rank N - 1.
-
-    `directions`: of two branches, of unit length in the metric.
-    """
+    """A zero of H where H' has rank N - 1; `directions`: of two branches, with unit length in the metric."""
 
     u: Array
     directions: tuple[Array, Array]
@@ -84,8 +81,8 @@ def full_derivative(evaluator: Evaluator, u: Array) -> Matrix:
 def scales(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> tuple[Array, Array]:
     """Extents, larger where an unknown's column of H' is small, and sizes of rows: largest entries at some points.
 
-    An unknown that stands still has no extent of its own, and in too small a unit its column looks like a lost rank.
-    The parameter's column vanishes where all unknowns stand still.
+    An unknown that stands still has no extent of its own; in too small a unit its column looks like a lost rank. The
+    parameter's column vanishes where all unknowns stand still.
     """
     entries = abs(full_derivative(evaluator, points[0]))
     for u in points[1:]:
@@ -160,7 +157,7 @@ def branch_point_near(
                 # Several ranks are lost: no border of one column and two rows makes H' regular.
                 return None
             if newton.size > ROOT_OF_ROUND_OFF:
-                # At a regular zero one more increment is round-off; at a multiple one branches touch, or more cross.
+                # At a regular zero one more increment is round-off; else branches touch, or more than two cross.
                 newton.run(increment, measure, lambda size: True)
                 if newton.size > ROOT_OF_ROUND_OFF:
                     return None
@@ -186,7 +183,6 @@ def directions(scaled: ScaledDerivative, here: Bordered, u: Array, heading: Arra
     rows = [scaled.second(u, here.left[0][:, 0], w[:, i]) for i in range(2)]
     a, b, c = float(rows[0] @ w[:, 0]), float(rows[0] @ w[:, 1]), float(rows[1] @ w[:, 1])
     discriminant = b * b - a * c
-    # SECOND's digits.
     if not discriminant > SECOND * SECOND * (b * b + abs(a * c)):
         return None
     root = np.sqrt(discriminant)

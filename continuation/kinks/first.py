@@ -18,7 +18,7 @@ DIP = 0.25
 """Part of a switch's values on both sides below which two zeros are possible."""
 
 TIED = NOISE_LOOKS * NOISE_LOOKS
-"""Round-off samples differ by this factor: a switch this near to zero has not left it, and several vanish together."""
+"""A switch within this multiple of its round-off sample is zero: samples differ by this factor."""
 
 
 def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Array:
@@ -36,7 +36,7 @@ def switch_noise(solver: PathSolver, pieces: Pieces, point: Linearization) -> Ar
 def first_zero(
     solver: PathSolver, pieces: Pieces, signs: Signs, arc: Arc
 ) -> tuple[Linearization, tuple[int, ...]] | None:
-    """The first point of an arc where a switch vanishes, with all that vanish there, or None.
+    """The first point of an arc where a switch vanishes, with all switches that vanish there, or None.
 
     A switch that vanishes at the beginning counts once it has left zero. `signs`: of the arc's piece. `EvaluationError`
     if the path cannot be evaluated.
@@ -48,7 +48,6 @@ def first_zero(
         grid = s * np.array([pieces.values(arc.a.u), *inner, pieces.values(arc.b.u)])
         if not (_suspects(grid) | (np.abs(grid[-1]) <= SIX_DIGITS * np.abs(grid).max(axis=0))).any():
             return None
-        # A switch within round-off of zero has not left it.
         fine = switch_noise(solver, pieces, arc.a)
         noise = TIED * fine
         fresh = grid[0] > fine
@@ -89,7 +88,6 @@ def _suspects(grid: Array) -> NDArray[np.bool_]:
 def _first(
     solver: PathSolver, pieces: Pieces, signs: Array, noise: Array, arc: Arc, grid: Array
 ) -> tuple[Linearization, int] | None:
-    """The first zero of all suspects."""
     found: tuple[Linearization, int] | None = None
     wrong = grid < 0.0
     order = np.where(wrong.any(axis=0), wrong.argmax(axis=0), grid.argmin(axis=0))

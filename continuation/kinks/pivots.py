@@ -1,4 +1,4 @@
-"""Passes corners where many switches vanish, by pivots in the small LCP of their rays.
+"""Corners where many switches vanish, passed by pivots in the small LCP of their rays.
 
 ``u' = S v' + r e'``, ``0 <= u' _|_ v' >= 0``, with distances u, complements v and the driving variable e.
 """
@@ -35,10 +35,7 @@ class Ray:
 
 @frozen(eq=False)
 class Way:
-    """The basis behind a corner.
-
-    `switched`: switches that change. `driver`: the next driving pair.
-    """
+    """The basis behind a corner; `switched`: switches that change; `driver`: the next driving pair."""
 
     switched: tuple[int, ...]
     driver: int
@@ -48,7 +45,7 @@ class Way:
 def way(S: Array, r: Array) -> Way | None:
     """The basis behind the corner, by pivots with perturbed switches, or None.
 
-    A perturbed problem, like a lexicographic rule, resolves ties (Cottle, Pang and Stone, section 4.9).
+    The perturbation, like a lexicographic rule, resolves ties (Cottle, Pang and Stone, section 4.9).
     """
     m = r.size
     apart = 1.5 + 0.5 * generic_vector(m)

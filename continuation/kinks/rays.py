@@ -111,8 +111,8 @@ def _candidates(corner: Corner) -> Iterator[Ray]:
 class _Family:
     """Derivatives of the corner's pieces, as low-rank changes of one.
 
-    `sizes`: of the switches' derivatives `GR` along `R`. `columns`: c_j of H'_{j changed} - H'_sigma = c_j grad s_j;
-    `Z`: M^{-1} of these, `GZ`: the switches' derivatives along them.
+    `sizes`: of the switches' derivatives `GR` along `R`. `columns`: c_j of H'_{j changed} - H'_sigma = c_j grad s_j.
+    `Z`: M^{-1} of these; `GZ`: the switches' derivatives along them.
     """
 
     corner: Corner
@@ -209,7 +209,7 @@ class _Family:
         return float(np.abs(left).max()) <= SIX_DIGITS * float(np.abs(there).max() + np.abs(own).max())
 
     def _factored(self, signs: Signs) -> Array:
-        """A kernel by its own factorisation; two borders must agree."""
+        """A kernel by its own factorisation, with two borders that must agree."""
         corner, found = self.corner, []
         for seed in (5, 6):
             border = np.random.default_rng(seed).standard_normal(corner.point.u.size) * np.sqrt(corner.point.weights)
@@ -221,7 +221,7 @@ class _Family:
 
 
 RAY_LENGTHS = 1e-3, 1e-4, 1e-5
-"""Lengths, in the metric, at which rays are checked if first order is unclear."""
+"""Lengths, in the metric, at which rays are checked if the first order does not decide."""
 
 
 def _stays(corner: Corner, signs: Signs, v: Array, unsure: Sequence[int], sizes: Array) -> bool:

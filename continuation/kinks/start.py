@@ -36,7 +36,7 @@ def begin(
 ) -> tuple[Linearization, float, Signs]:
     """The first point, step length and signs; binds the evaluator.
 
-    `u`: the start. `start`: one with direction. `StartError` without a branch in that direction.
+    `u`: the start; `start`: one with direction. `StartError` if no branch has that direction.
     """
     try:
         if start is not None:

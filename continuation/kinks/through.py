@@ -51,9 +51,7 @@ def cross(
     """Resolve a kink.
 
     The path continues on the straightest branch with its determinant's sign, as if the map were perturbed (Allgower and
-    Georg, Section 2.1).
-
-    `solver`, `signs`: of the incoming piece. `beta`: vanishing switches.
+    Georg, Section 2.1). `solver`, `signs`: of the incoming piece. `beta`: vanishing switches.
     """
     back = -point.tangent[None]
     try:

@@ -1,6 +1,6 @@
 """Bordered linear systems ``[[H_y, H_lam], [border']] z = (r, rho)``, with the sign of their determinant.
 
-Structured H_y are factored alone and bordered by elimination; near a fold the whole is factored.
+Structured H_y are factored alone and bordered by elimination; near a fold the bordered matrix is factored.
 """
 
 from continuation.linear.banded import Banded

@@ -33,7 +33,8 @@ def _rows(n: int) -> NDArray[np.int32]:
 
 
 HIDDEN = EPS / SIX_DIGITS
-"""An entry below this share of the largest may decide its row: solutions are corrected, as LU leaves six digits."""
+"""An entry below this share of the largest may decide its row: LU keeps six digits of it, so solutions are
+corrected."""
 
 
 @frozen(eq=False)
@@ -79,7 +80,7 @@ class Dense:
         found = z
         left = before = np.inf
         with np.errstate(all="ignore"):
-            # A correction that does not halve the residual is the last.
+            # Stop if a correction does not halve the residual.
             while left > BACKWARD_ERROR:
                 gap, terms = right - whole @ z, sizes @ np.abs(z) + np.abs(right)
                 left = float((np.abs(gap) / np.where(terms > 0.0, terms, 1.0)).max())

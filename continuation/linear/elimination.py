@@ -1,4 +1,4 @@
-"""Block elimination for [[A, P], [R, S]] with k border rows by factors of A: W = A^-1 P, Schur complement S - R W."""
+"""Block elimination for [[A, P], [R, S]] with factors of A: W = A^-1 P, Schur complement S - R W."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class BlockElimination:
         return self.factor.sign * self.elimination.sign
 
     def solve(self, r: Array, rho: float) -> Array:
-        """The solution, shape (N + 1,); the whole is factored if elimination is inaccurate."""
+        """The solution, shape (N + 1,); if elimination is inaccurate, by factors of the bordered matrix."""
         z, accurate = refined(self.bordered, self.elimination.solve, join(r, rho))
         return z if accurate else self._whole.solve(r, rho)
 
@@ -84,10 +84,10 @@ def eliminate(
     factor: Callable[[Any], Factored | None],
     whole: Callable[[], BorderedSystem],
 ) -> BorderedSystem:
-    """Factor H_y and border it; near a fold factor the whole. `SingularError` if singular or not finite.
+    """Factor H_y and border it; near a fold factor the bordered matrix. `SingularError` if singular or not finite.
 
-    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED the signs in
-    ``det M = det H_y * schur`` are certain (Govaerts, Numerical Methods for Bifurcations, SIAM 2000, section 3).
+    One refinement of ``w = H_y^{-1} H_lam`` shows how singular H_y is, in any units. Within TRUSTED the signs in ``det
+    M = det H_y * schur`` are certain (Govaerts, Numerical Methods for Bifurcations, SIAM 2000, section 3).
     """
     bordered = BorderedMatrix.of(matrix, column, row)
     factors = factor(matrix)

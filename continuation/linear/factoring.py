@@ -33,10 +33,10 @@ def check_method(argument: str, name: object) -> str:
 
 @define(eq=False)
 class Factoring:
-    """Factors sparse matrices.
+    """Factors sparse matrices; `used` counts them by method.
 
     `method`: "auto", "superlu", or "cholmod" for definite matrices. `weak_pivots`: SuperLU keeps weak diagonal pivots
-    of symmetric patterns, to save fill; refinement corrects. `used`: number of matrices by method.
+    of symmetric patterns, to save fill; refinement corrects.
     """
 
     method: str = "auto"
@@ -57,7 +57,7 @@ class Factoring:
                 return self._counted("CHOLMOD", factor)
         how: dict[str, Any] = {"permc_spec": "COLAMD"}
         if symmetric or not self.weak_pivots:
-            # MMD fills symmetric patterns half as much.
+            # For symmetric patterns MMD halves the fill.
             how["permc_spec"] = "MMD_AT_PLUS_A"
         if symmetric and self.weak_pivots:
             how |= {"diag_pivot_thresh": 1e-3, "options": {"SymmetricMode": True}}
@@ -74,7 +74,7 @@ class Factoring:
 
 
 def factor_definite(matrix: Matrix, diagonal: Array, rows: Matrix) -> Solver | None:
-    """Factors of a positive or negative definite matrix of symmetric pattern, csc and csr, or None."""
+    """Factors of a positive or negative definite matrix of symmetric pattern, given as csc and csr; or None."""
     # A discretised Laplacian is negative definite; det A = (-1)^n det(-A).
     side = np.sign(diagonal[0])
     root = np.sqrt(np.abs(diagonal))

@@ -1,7 +1,8 @@
 """A bordered system [[A, P], [R, S]] for a matrix A of any rank, and A's null spaces.
 
-If A lost at most as many ranks as P has columns, the whole is regular for almost all borders; solutions for unit
-vectors below span A's null spaces (Govaerts, Numerical Methods for Bifurcations, Sections 3.3 and 4.1).
+If A has lost at most as many ranks as P has columns, the bordered matrix is regular for almost all borders. Solutions
+for unit vectors in the border rows span A's null spaces (Govaerts, Numerical Methods for Bifurcations, Sections 3.3 and
+4.1).
 """
 
 from __future__ import annotations
@@ -23,13 +24,14 @@ from continuation.linear.superlu import superlu_sign
 from continuation.linear.system import SingularError
 
 LONG = 10.0
-"""Ratio of null vectors to border above which they replace it: at an angle of 84 degrees, where a digit is lost."""
+"""Length of null vectors, over the border's, above which they replace it: the angle is then 84 degrees, a digit is
+lost."""
 
 REFRESHED = 4
-"""Attempts; more do not help if two ranks are lost."""
+"""Most replacements of the border; more do not help if two ranks are lost."""
 
 BORDERS = 5
-"""Lost ranks that are counted: two more than `continuation.events.multiple` resolves, for its message."""
+"""Lost ranks that are counted: for a message, two more than `continuation.events.multiple` resolves."""
 
 RANK = SIX_DIGITS
 """Singular values below this, relative to A, are zero."""
@@ -37,10 +39,9 @@ RANK = SIX_DIGITS
 
 @frozen(eq=False, slots=False)
 class Bordered:
-    """[[A, P], [R, S]], factored whole; A, (n, m), is dense or sparse, real or complex.
+    """[[A, P], [R, S]], factored; A, (n, m), is dense or sparse, real or complex.
 
-    `shape`: of A. `matrix`: the whole, with scaled border rows if sparse. `columns`: P, (n, l). `lu`: its factors.
-    `scale`, (n + k, 1): row factors.
+    `shape`: of A. `matrix`: with scaled border rows if sparse. `columns`: P, (n, l). `scale`, (n + k, 1): row factors.
     """
 
     shape: tuple[int, int]
@@ -51,7 +52,7 @@ class Bordered:
 
     @classmethod
     def of(cls, matrix: Matrix, columns: Array, rows: Array) -> Bordered:
-        """Factor A with columns, (n, l), and rows, (k, m + l) or (k, m) if S = 0; SingularError if singular."""
+        """Factor A with columns, (n, l), and rows, (k, m + l), or (k, m) for S = 0; SingularError if singular."""
         (n, m), sparse = matrix.shape, sp.issparse(matrix)
         rows = np.hstack([rows, np.zeros((len(rows), m + columns.shape[1] - rows.shape[1]))])
         scale = np.ones((n + len(rows), 1))
@@ -102,7 +103,7 @@ class Bordered:
 
     @cached_property
     def right(self) -> tuple[Array, Array]:
-        """A basis of the right null space, (m, k), and defects, which vanish with it, (l, k)."""
+        """A basis of the right null space, (m, k), and defects, (l, k), which vanish for true null vectors."""
         (n, m), size = self.shape, len(self.scale)
         found = self.solve(np.eye(size, size - n, -n))
         return found[:m], found[m:]
@@ -115,7 +116,7 @@ class Bordered:
         return found[:n], found[n:]
 
     def refreshed(self, matrix: Matrix) -> Bordered:
-        """Another matrix, bordered with these null vectors for the best condition."""
+        """Another matrix with these null vectors as borders, which gives the best condition."""
         return Bordered.of(matrix, np.linalg.qr(self.left[0])[0], np.linalg.qr(self.right[0])[0].conj().T)
 
 
@@ -134,7 +135,7 @@ class NearlySingular:
 
 
 def null_vectors(matrix: Matrix, b: Array, c: Array) -> NearlySingular:
-    """Border a matrix, (n, n), by unit vectors b and c, or by its null vectors if nearly orthogonal.
+    """Border a matrix, (n, n), by unit vectors b and c; by its null vectors if b or c is nearly orthogonal to them.
 
     Raises `SingularError` if several ranks are lost.
     """

@@ -16,7 +16,7 @@ from continuation.linear.system import SingularError
 
 RESTART = 100
 CYCLES = 20
-"""GMRES keeps RESTART vectors, for CYCLES restarts."""
+"""GMRES keeps RESTART vectors, and restarts CYCLES times."""
 
 
 def _operator(operator: Any) -> Matrix:
@@ -58,7 +58,7 @@ class Operator:
 
 @frozen(eq=False)
 class Krylov:
-    """The bordered operator, solved by GMRES; `scale` of the last row, `inverse`: bordered preconditioner."""
+    """The bordered operator, solved by GMRES; `scale`: of the last row; `inverse`: bordered preconditioner."""
 
     bordered: BorderedMatrix
     scale: float
@@ -75,7 +75,7 @@ class Krylov:
         z, accurate = refined(self.bordered, self._gmres, rhs)
         with np.errstate(all="ignore"):
             left = float(np.abs(self.bordered.residual(z, rhs)).max() / (np.abs(rhs).max() or 1.0))
-        # A singular operator yields z of size 1 / eps with a residual of round-off; this is that of condition 1e12.
+        # A singular operator gives z of size 1 / eps and a tiny residual; this bound is that of condition 1e12.
         if not (accurate and left <= np.sqrt(ROOT_OF_ROUND_OFF)):
             raise SingularError(
                 f"GMRES on the bordered operator of order {len(rhs)} did not converge: relative residual {left:.1e} "
@@ -112,7 +112,7 @@ def factor_operator(matrix: Operator, column: Array, row: Array) -> Krylov:
     first = matrix.preconditioner.matvec
     W, border = first(column), bordered.row
     if border[-1] == border[:-1] @ W:
-        # Another corner will do, as the preconditioner is no inverse.
+        # The preconditioner is no inverse: it may have another corner.
         border = np.append(border[:-1], border[-1] + np.linalg.norm(border))
     inverse = eliminated(first, W[:, None], border[None])
     return Krylov(bordered, scale, LinearOperator((n + 1, n + 1), matvec=inverse.solve, dtype=float))

@@ -13,14 +13,14 @@ from continuation.linear.silence import without_warnings
 from continuation.linear.system import SingularError
 
 REFINEMENTS = 2
-"""Corrections per solve: each gains the digits of TRUSTED."""
+"""Corrections per solve; each gains the digits of TRUSTED."""
 
 BACKWARD_ERROR = 16 * EPS
-"""Row-wise backward error of round-off."""
+"""Row-wise backward error that counts as round-off."""
 
 TRUSTED = SIX_DIGITS
-"""Largest relative error of H_y^{-1} H_lam, least relative Schur complement: refinement gains six digits a step, and
-signs are certain."""
+"""Largest relative error of H_y^{-1} H_lam, and least relative Schur complement, for elimination: a refinement gains
+six digits, signs are certain."""
 
 
 class Factored(Protocol):
@@ -53,7 +53,7 @@ class BorderedMatrix:
 
     @classmethod
     def of(cls, matrix: Matrix, column: Array, row: Array) -> BorderedMatrix:
-        """With row sums of ``abs(matrix)``."""
+        """The matrix with row sums of ``abs(matrix)``."""
         with np.errstate(over="ignore"):
             return cls(matrix, column, row, abs(matrix) @ np.ones(len(column)))
 
@@ -85,7 +85,7 @@ def join(r: Array, rho: float) -> Array:
 
 @without_warnings(all="ignore")
 def refined(bordered: BorderedMatrix, solve: Callable[[Array], Array], rhs: Array) -> tuple[Array, bool]:
-    """Solve M z = rhs by a corrected approximate inverse; also whether the residual is round-off."""
+    """The solution of M z = rhs by an approximate inverse and corrections, and whether its residual is round-off."""
     z = solve(rhs)
     for _ in range(REFINEMENTS):
         gap = bordered.residual(z, rhs)

@@ -1,4 +1,4 @@
-"""Numpy's warnings switched off once, as switching is slow."""
+"""Numpy's warnings switched off for a whole trace, as switching is slow."""
 
 from __future__ import annotations
 

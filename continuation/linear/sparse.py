@@ -22,7 +22,7 @@ def canonical(matrix: Matrix) -> Matrix:
 
 
 def factor_whole(matrix: Matrix, column: Array, row: Array) -> BorderedSystem:
-    """Factor the bordered matrix whole, with twice the fill and time; `SingularError` if singular or not finite."""
+    """Factor the bordered matrix, with twice the fill and time; `SingularError` if singular or not finite."""
     bordered = BorderedMatrix.of(matrix, column, row)
     n = len(column)
     # A small last row is eliminated late, without fill.

@@ -19,23 +19,23 @@ from continuation.linear.sparse import factor_square
 from continuation.linear.superlu import definite
 
 ALL_OF_DENSE = 100
-"""Largest order for all eigenvalues: 8 ms, and 80 ms at twice the order."""
+"""Largest order at which all eigenvalues are computed: 8 ms, and 80 ms at twice the order."""
 
 EIGENVALUES = 6
-"""Default number of eigenvalues for others."""
+"""Number of eigenvalues of larger matrices."""
 
 OFF_AXIS = EPS / SIX_DIGITS
-"""Least real part of an unstable eigenvalue over the largest modulus: events are located to that."""
+"""Least real part of an unstable eigenvalue over the largest modulus: the accuracy of located events."""
 
 SHIFT = 0.517
-"""Fraction of the bound on real parts; no round number."""
+"""Fraction of the bound on real parts; no round number, which could be an eigenvalue."""
 
 NEARER = 0.1
-"""Part of a bound, and of a shift, that is tried next: a tenth of the shift takes a third of Arnoldi's steps."""
+"""Factor of the next bound, and shift, that is tried: a tenth of the shift takes a third of Arnoldi's steps."""
 
 DIMENSIONS, TESTS_IN_ALL = 40, 6
-"""Largest Krylov dimension per wanted eigenvalue and one more; eigenvalues are tested whenever the dimension has grown
-by a sixth, so that all tests cost little more than the last."""
+"""Largest Krylov dimension per wanted eigenvalue, and one more; eigenvalues are tested at each growth of it by a sixth:
+all tests then cost little more than the last."""
 
 
 @frozen(eq=False)
@@ -79,10 +79,9 @@ class Spectrum:
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
     """The eigenvalues of ``side * matrix`` that decide stability.
 
-    Small matrices: all, by QR. Others: the k (default 6) nearest to
-    a shift, by Arnoldi's method on the inverse (Govaerts, Numerical Methods for Bifurcations, Section 5.3); the count
-    is complete if their disc covers the right part of the rectangle from `bounds`. Raises `TypeError` for an operator,
-    `ArithmeticError` without convergence.
+    Small matrices: all, by QR. Others: the k (default 6) nearest to a shift, by Arnoldi's method on the inverse
+    (Govaerts, Numerical Methods for Bifurcations, Section 5.3); the count is complete if their disc covers the right
+    part of the rectangle from `bounds`. Raises `TypeError` for an operator, `ArithmeticError` without convergence.
     """
     matrix = plain(matrix)
     if not (isinstance(matrix, np.ndarray) or issparse(matrix)):
@@ -124,7 +123,7 @@ def _counted(values: Any, covered: bool = True) -> Spectrum:
 
 
 def bounds(matrix: Matrix) -> tuple[float, float]:
-    """Bounds of eigenvalues' real and imaginary parts, those of the symmetric and the skew part (Bendixson's theorem),
+    """Bounds of eigenvalues' real and imaginary parts: those of the symmetric and the skew part (Bendixson's theorem),
     by Gershgorin's discs.
     """
     rows = abs(matrix + _transposed(matrix)).sum(axis=1)
@@ -135,7 +134,7 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 
 
 def nearer(matrix: Matrix, bound: float, least: float) -> float:
-    """A bound of real parts that falls as long as Cholesky's method shows that the symmetric part has it.
+    """A smaller bound of real parts, as long as Cholesky's method shows that it bounds the symmetric part.
 
     Gershgorin's, of differences of fourth order, is a million times too large.
     """
@@ -161,7 +160,7 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
     largest = float(np.abs(matrix.diagonal()).max())
-    # A singular matrix needs a shift; if all eigenvalues are stable, one comparable to oscillations.
+    # A singular matrix needs a shift; if all eigenvalues are stable, one comparable to frequencies.
     least = SHIFT * SIX_DIGITS * largest
     if real > NEARER * largest:
         real = nearer(matrix, real, least)
@@ -171,15 +170,15 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     def known(theta: Any, error: Array) -> bool:
         real_parts = (shift + 1.0 / theta).real
         off = error / np.abs(theta) ** 2 / np.maximum(np.abs(real_parts), np.finfo(float).tiny)
-        # The square suffices for an eigenvalue on the axis, as events are located to OFF_AXIS.
+        # Enough for an eigenvalue on the axis, as events are located to OFF_AXIS.
         return bool(((off <= SIX_DIGITS) | (error <= SIX_DIGITS**2 * np.abs(theta))).all())
 
     while True:
         try:
             theta, more = dominant(inverse, generic_vector(n), wanted, known)
         except ArithmeticError:
-            # Arnoldi's steps grow like the root of the shift (Saad, Numerical Methods for Large Eigenvalue Problems,
-            # Section 6.6), and eigenvalues are far to the left of the bound.
+            # The eigenvalues are far left of the bound, and Arnoldi's steps grow like the root of the shift (Saad,
+            # Numerical Methods for Large Eigenvalue Problems, Section 6.6).
             if shift <= least:
                 raise
             solves += min(n, DIMENSIONS * (wanted + 1))
@@ -192,7 +191,6 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
         covered = wanted == n or real <= 0.0 or bool(np.abs(found - shift).max() >= corner)
         if covered or not (found.real > 0.0).all():
             return evolve(_counted(found, covered), solves=solves)
-        # There may be more on the right.
         wanted = min(2 * wanted, n)
 
 
@@ -210,7 +208,7 @@ def dominant(
     for j in range(1, most + 1):
         x = apply(Q[j - 1])
         size = float(np.linalg.norm(x))
-        # Once leaves spurious copies of eigenvalues.
+        # One pass leaves spurious copies of eigenvalues.
         for _ in range(2):
             part = Q[:j] @ x
             H[:j, j - 1] += part

@@ -44,7 +44,7 @@ def factor_superlu(matrix: Matrix, **how: Any) -> Any:
 
 
 def definite(matrix: Matrix) -> bool:
-    """Whether a symmetric csc matrix is positive definite: elimination without exchanges meets positive pivots only."""
+    """Whether a symmetric csc matrix is positive definite: elimination without exchanges meets only positive pivots."""
     lu = factor_superlu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     if lu is None:
         return False

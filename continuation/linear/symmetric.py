@@ -13,7 +13,7 @@ from continuation.arrays import Array, least
 
 @frozen(eq=False)
 class Cholesky:
-    """``factor * A = L L'``: a factor 1 or 2 keeps all digits if A is scaled by a power of two."""
+    """``factor * A = L L'``; the factor 1 or 2 keeps all digits if A is scaled by a power of two."""
 
     lower: Array
     factor: float

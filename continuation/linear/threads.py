@@ -18,7 +18,6 @@ from scipy.linalg import _fblas
 
 CHOSEN = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 SYMBOLS = ("scipy_openblas_{}_num_threads64_", "scipy_openblas_{}_num_threads", "openblas_{}_num_threads")
-"""OpenBLAS's names in numpy, scipy and elsewhere."""
 
 
 @cache
@@ -26,7 +25,6 @@ def _pools() -> tuple[tuple[Callable[[], int], Callable[[int], object]], ...]:
     found = []
     if not any(name in os.environ for name in CHOSEN):
         for module in (_umath_linalg, _fblas):
-            # Linked libraries are searched too.
             library = ctypes.CDLL(module.__file__)
             name = next((name for name in SYMBOLS if hasattr(library, name.format("set"))), None)
             if name is not None:
@@ -59,4 +57,3 @@ class _OneThread(ContextDecorator):
 
 
 one_thread = _OneThread()
-"""A context, or a decorator."""

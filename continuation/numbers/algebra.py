@@ -1,6 +1,6 @@
 """Truncated algebras over numbers or intervals: c_0 + d with a nilpotent d.
 
-Algebras share linear operations, along the leading axis. They differ in `degrees`, each coefficient's power of d, in
+Linear operations, along the leading axis, are common. Algebras differ in `degrees`, each coefficient's power of d, in
 `product`, by a bilinear product of coefficients, and in `expansion`, f(c_0 + d) = sum_k f_k d^k, with f's Taylor
 coefficients f_k at c_0.
 """
@@ -39,7 +39,7 @@ class TaylorAlgebra:
         return out
 
     def expansion(self, f: list[Any], a: Coefficients) -> Coefficients:
-        """f_0 + f_1 d + f_2 d^2, d being `a` without its constant: numbers of this algebra have no third order."""
+        """f_0 + f_1 d + f_2 d^2 for d, `a` without its constant: this algebra has no third order."""
         d, less = a[1:], a[1:-1]
         out = f[1] * d
         if len(less):
@@ -68,7 +68,7 @@ class GradientAlgebra:
 
 @frozen
 class Beside:
-    """x + y s with s^2 = 0, x and y of the inner algebra, and the coefficients of x first."""
+    """x + y s with s^2 = 0, x and y of the inner algebra; the coefficients of x come first."""
 
     inner: TaylorAlgebra | GradientAlgebra | Beside
 

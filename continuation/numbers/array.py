@@ -15,7 +15,7 @@ from continuation.numbers.truncated import KINDS, Truncated, alike, common, wrap
 
 
 class WithAxes:
-    """Array methods; np.array([y[0], ...]) stores scalars, which lack them, as entries."""
+    """Array methods. Scalars lack them, so that np.array([y[0], ...]) stores these as entries."""
 
     __slots__ = ()
 
@@ -87,7 +87,7 @@ class Jet(Truncated):
     OWN, WHO, ONE, NAME, LOST = 1, "jets", "a jet", "a Jet", "series"
 
     def __new__(cls, c: Any) -> Jet:
-        """Check and copy the coefficients."""
+        """Check and copy."""
         coefficients = np.array(c, dtype=float)
         if coefficients.ndim == 0 or len(coefficients) == 0:
             raise ValueError(f"c has shape {coefficients.shape}; expected (order + 1, *shape) with order >= 0")
@@ -130,7 +130,7 @@ class Interval(Truncated):
     OWN, WHO, ONE, NAME, LOST = 2, "interval arrays", "an interval array", "an Interval", "width"
 
     def __new__(cls, lo: Any, hi: Any = None) -> Interval:
-        """Check and copy the ends."""
+        """Check and copy."""
         low = np.array(lo, dtype=float)
         high = low if hi is None else np.array(hi, dtype=float)
         if low.shape != high.shape or not (low <= high).all():

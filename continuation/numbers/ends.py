@@ -1,6 +1,6 @@
 """Intervals as lower and upper ends, with arithmetic rounded outward.
 
-An end is nan if the operation is undefined on part of the interval; no comparison with nan holds.
+An end is nan if the operation is undefined on part of the interval; comparisons with nan are false.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ def up(x: Array) -> Array:
 def up_sum(x: Array) -> Array:
     """A number above every real sum that rounds to x, by at most two ulps; x if zero.
 
-    EPS |x| is at least the distance to the next number; sums that are zero or subnormal are exact. `nextafter` takes
-    several times as long.
+    EPS |x| is at least the distance to the next number; zero and subnormal sums are exact. `nextafter` takes several
+    times as long.
     """
     return x + EPS * np.abs(x)
 
@@ -91,7 +91,6 @@ class Ends:
         return as_ends(other) - self
 
     def __mul__(self, other: Ends | float) -> Ends:
-        """The product; a square if other is self."""
         return whole_power(self, 2) if other is self else self._times(as_ends(other))
 
     __rmul__ = __mul__

@@ -16,13 +16,13 @@ from continuation.numbers.ends import Ends, absolute_range, down, up
 LIBRARY_ULPS = 8.0
 
 LARGEST_ANGLE = 1e5
-"""Radians; larger arguments have the range [-1, 1]."""
+"""Radians; for larger arguments the range is [-1, 1]."""
 
 RangeOf = Callable[[Ends], Ends]
 
 
 def near(x: float) -> Ends:
-    """An interval around a number that rounds to x or its neighbour."""
+    """The interval between x's neighbours, which holds all that rounds to x."""
     return Ends(down(np.asarray(x)), up(np.asarray(x)))
 
 

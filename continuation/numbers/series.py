@@ -149,7 +149,7 @@ def _shifted(u: PowerSeries, constant: float, sign: int = 1) -> PowerSeries:
 
 
 def _exponential(u: PowerSeries, function: np.ufunc, rate: Any = 1.0, first: np.ufunc | None = None) -> PowerSeries:
-    """Solve v' = rate v u'; `first` replaces the value."""
+    """Solve v' = rate v u'; `first` replaces v_0."""
     du, out = _scaled(_weighted(u), rate), _room(u)
     out[0] = of(function, u[0])
     for k in range(1, len(u)):
@@ -185,7 +185,7 @@ def _tangent(u: PowerSeries, function: np.ufunc, cosine: np.ufunc, sign: int) ->
 
 
 def _circle(u: PowerSeries, sign: int) -> PowerSeries:
-    """Factors keep sign (1 - u**2) accurate near zeros."""
+    """The value sign (1 - u**2), from factors, so accurate near its zeros."""
     return multiply(_shifted(u, sign, -sign), _shifted(u, 1))
 
 
@@ -203,7 +203,7 @@ BY_SLOPE: dict[np.ufunc, Inverse] = {
     np.arccosh: (lambda u: sqrt(_circle(u, -1)), lambda x: x <= 1, "be above 1"),
     np.arctanh: (lambda u: _circle(u, 1), lambda x: abs(x) >= 1, "lie inside (-1, 1)"),
 }
-"""Functions with derivative 1 / D(u): D, the undefined case, and the requirement."""
+"""Functions with derivative 1 / D(u): D, the excluded arguments, and the requirement in words."""
 
 
 def _by_slope(function: np.ufunc, u: PowerSeries) -> PowerSeries:

@@ -18,7 +18,7 @@ from continuation.numbers.ends import Ends, moved, sparse_product
 from continuation.numbers.series import ELEMENTARY
 
 FUNCTIONS: dict[Any, Callable[..., Any]] = {}
-"""Rules by numpy function, filled by the package: `functions` imports `Truncated`."""
+"""Rules by numpy function, filled by the package, as `functions` imports `Truncated`."""
 
 
 ARRAY_METHODS = (np.sum, np.mean, np.prod, np.squeeze, np.dot)
@@ -34,7 +34,7 @@ class Truncated(NDArrayOperatorsMixin):
     ONE: ClassVar[str]
     NAME: ClassVar[str]
     LOST: ClassVar[str]
-    """Number of axes in front of the shape; words for error messages."""
+    """Number of axes before the shape; words of error messages."""
 
     c: Coefficients
     algebra: Algebra
@@ -151,7 +151,7 @@ class Truncated(NDArrayOperatorsMixin):
         )
 
     def moved(self, move: Callable[[Array], Array]) -> Any:
-        """Apply `move`, which selects entries, to arrays (coefficients, *shape), or (coefficients, boxes, *shape)."""
+        """Apply `move`, which selects entries, to arrays (coefficients, *shape) or (coefficients, boxes, *shape)."""
         return wrap(moved(move, self.c), self.algebra)
 
     def lifted(self, x: Any) -> Any:
@@ -186,7 +186,6 @@ class Truncated(NDArrayOperatorsMixin):
 
 
 KINDS: dict[type, tuple[type[Truncated], type[Truncated]]] = {}
-"""Scalar and array class by type of coefficients."""
 
 
 def wrap(c: Coefficients, algebra: Algebra) -> Any:

@@ -187,7 +187,7 @@ UFUNC_RULES: dict[np.ufunc, Callable[..., Coefficients]] = {
     np.minimum: _extremum("numpy.minimum", -1),
     np.matmul: matmul,
 }
-"""Rules of an algebra and coefficients, with equally many axes but for `matmul`."""
+"""Rules for an algebra and coefficients; these have equally many axes, but for `matmul`."""
 
 
 # Comparisons

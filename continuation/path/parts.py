@@ -99,7 +99,7 @@ def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> Steps
 def following(
     first: Sequence[Step], second: Sequence[Step], events: Sequence[LocatedEvent], extent: float
 ) -> StepsAndEvents:
-    """Steps and events of a second path, counted from the first's end; `ValueError` if the ends do not meet.
+    """Steps and events of a second path, counted from the first's end; `ValueError` if the ends differ.
 
     `extent`: of the larger path.
     """

@@ -25,7 +25,7 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 DEEPEST = 8
-"""Halvings of an arc: each divides a cubic's error by 16, eight give nine digits."""
+"""Most halvings of an arc: each divides a cubic's error by 16, eight give nine digits."""
 
 
 def refined_path(
@@ -58,7 +58,7 @@ def refined_path(
 
 
 def error_bound(homotopy: Any, path: Sequence[Step], points: Array, indices: Sequence[int]) -> Array:
-    """How far points of a path's dense output are off, shape (k, N + 1).
+    """Distance of a path's dense output from the path, shape (k, N + 1).
 
     Chord steps across the null vector of H' lead onto the path. The first is Newton's, whose error is half of what H'
     changes on the way; those after the second shrink by twice the ratio of the first two (Deuflhard, Newton Methods for
@@ -94,7 +94,6 @@ def _between(solver: PathSolver, before: Step, after: Step, segment: Segment, al
         near: Linearization = linearize(solver.evaluator, guess, weights, border)
         point = solver.project_and_linearize(near, guess, border)
     except EvaluationError:
-        # An arc without a correction stays.
         return []
     if (np.abs(point.u - guess) <= allowed).all():
         return []

@@ -131,7 +131,6 @@ def plot_steps(path: Drawn, axes: Axes | None = None) -> Axes:
     axes = axes_or_new(axes)
     s = path.arclength
     lengths = np.diff(s)
-    # An event on a point gives length zero.
     axes.semilogy(s[1:][lengths > 0], lengths[lengths > 0], marker=".", markersize=4, linewidth=0.8, color=COLOURS[0])
     for event in path.events:
         axes.axvline(event.arclength, color="0.6", linewidth=0.8, zorder=0)

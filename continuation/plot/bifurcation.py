@@ -92,7 +92,6 @@ def _along(path: Drawn, s: Array, u: Array, value: Value) -> Array:
 def _measured(path: Drawn, value: Value) -> Callable[[Array], float] | None:
     """A function of (y, lam), or None for an observed scalar."""
     if value is None:
-        # NaN fills shorter paths in archives.
         return lambda u: float(np.fmax.reduce(np.abs(u[:-1])))
     if callable(value):
         function = value

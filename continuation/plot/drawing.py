@@ -47,8 +47,6 @@ UNSTABLE = "unstable"
 Axes = Any
 
 Drawn: TypeAlias = Any
-"""A path."""
-
 StableParts: TypeAlias = tuple[Sequence[float], bool] | None
 """Arclengths where stability changes, and whether the first part is stable."""
 
@@ -57,17 +55,7 @@ StableParts: TypeAlias = tuple[Sequence[float], bool] | None
 class Drawing:
     """One number along a path.
 
-    Attributes
-    ----------
-    path : Path
-    s, u : ndarray
-        Points of the curve.
-    y, at : sequence of float
-        The number at points and at events.
-    label : str
-    k : int
-        Of colours and dashes.
-    parts : StableParts
+    `s`, `u`: points of the curve. `y`, `at`: the number at points and at events. `k`: of colours and dashes.
     """
 
     path: Drawn
@@ -94,7 +82,7 @@ def sampled(path: Drawn) -> tuple[Array, Array]:
 
 
 def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
-    """`number(point)` at the arclengths `wanted`: known at points and events, between them by monotone cubics."""
+    """`number(point)` at the arclengths `wanted`: known at points and events, by monotone cubics between."""
     from scipy.interpolate import PchipInterpolator
 
     points = sorted([*path.events, *path.steps], key=lambda point: point.arclength)
@@ -110,9 +98,8 @@ def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
 
 
 def stable_parts(path: Drawn) -> StableParts:
-    """From stored stability, or None.
-
-    It changes at the first event between two points, else half way.
+    """The stable parts, or None if stability is not stored. It changes at the first event between two points, else half
+    way.
     """
     if not path.steps or UNSTABLE not in path.steps[0].observed:
         return None
@@ -154,7 +141,6 @@ def draw(axes: Axes | None, paths: Sequence[Sequence[Drawing]], against: str, le
 
 
 def _mark(axes: Axes, paths: Sequence[Sequence[Drawing]], lam: bool, named: bool) -> None:
-    """Mark events; name the first of each name."""
     from matplotlib.lines import Line2D
 
     said = set()
@@ -204,7 +190,6 @@ def chosen_components(components: Iterable[int] | None, y: Array) -> list[int]:
     """Requested components, or some evenly spaced."""
     n = y.shape[1]
     if components is None:
-        # Archives fill shorter paths with NaN.
         filled = np.flatnonzero(np.isfinite(y).any(axis=0))
         spaced = np.linspace(0, len(filled) - 1, min(len(filled), MOST_COMPONENTS)).round().astype(int)
         return [int(i) for i in filled[spaced]]

@@ -18,7 +18,7 @@ from continuation.predictors import Prediction
 class Arc:
     """The path from a to b, in the pseudo-arclength border . (u - a.u).
 
-    `length`: pseudo-arclength of b. `guide`: the segment or a better model, for events.
+    `length`: pseudo-arclength of b. `guide`: the segment, or a better model for events.
     """
 
     a: Linearization
@@ -60,7 +60,7 @@ def position(arc: Arc, u: Array) -> float:
 
 
 def arc_between(a: Linearization, b: Linearization, prediction: Prediction) -> Arc:
-    """The prediction, made to end on b, if it is a `Curve`; else the Hermite cubic."""
+    """The prediction, bent to end on b, if it is a `Curve`; else the Hermite cubic."""
     # hasattr is faster than isinstance of a Protocol.
     if not hasattr(prediction, "derivative"):
         return cubic_between(a, b, a.border)
@@ -81,7 +81,7 @@ def angle_between(a: Linearization, b: Linearization) -> float:
 
 
 def length_between(a: Linearization, b: Linearization, angle: float) -> float:
-    """Arclength from the chord, exact for a circle, else to fourth order."""
+    """Arclength from chord and angle: exact for a circle, else of fourth order."""
     half = 0.5 * angle
     chord = norm(a.weights, b.u - a.u)
     return chord * (half / math.sin(half)) if half > 1e-8 else chord

@@ -20,7 +20,7 @@ REFINED = 1e-14
 """Relative last increment of a fully refined tangent: 50 ulps."""
 
 ROUND_OFF_LEFT = 1e3
-"""Factor of a last increment that is accepted if round-off ends the contraction: condition numbers of a thousand are
+"""Factor of a last increment that is accepted where round-off ends the contraction: condition numbers of a thousand are
 ordinary."""
 
 SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
@@ -28,10 +28,10 @@ SOLVED, NEARLY_SOLVED = 1e-13, 1e-9
 at half its range."""
 
 NEAR_SINGULAR = SIX_DIGITS / EPS
-"""Growth of a solution that shows a singular matrix: six digits remain."""
+"""Growth of a solution that shows a singular matrix: six digits are left."""
 
 TANGENT_REFINEMENT = Contraction(ratio=RELIABLE, first=MONOTONE)
-"""The first increment is of a general error, the second of what the factorisation leaves, so their ratio need only be
+"""The first increment is a generic vector's error, the second what the factorisation leaves: their ratio need only be
 below one."""
 
 SOLVE_REFINEMENT = Contraction(ratio=RELIABLE)
@@ -39,7 +39,7 @@ SOLVE_REFINEMENT = Contraction(ratio=RELIABLE)
 
 @frozen(eq=False)
 class Anchor:
-    """A factorisation, with point and border to remake it."""
+    """A factorisation, with the point and border to repeat it."""
 
     u: Array
     border: Array
@@ -85,11 +85,11 @@ class Linearization:
         return self._completed(self.anchor.system.solve(r, 0.0), rho, border)
 
     def approximate(self, r: Array, rho: float = 0.0, border: Array | None = None) -> Array:
-        """`solve` for iterations that measure their residual: see `CountedSystem`."""
+        """`solve` for iterations that measure their residual (`CountedSystem`)."""
         return self._completed(self.anchor.system.approximate(r, 0.0), rho, border)
 
     def blur(self, noise: Array) -> float:
-        """Length of a correction by noise of the equations, shape (N,): two sign samples."""
+        """Length of a correction by noise of the equations, shape (N,), from two samples of signs."""
         samples = (self.approximate(signs * noise) for signs in (1.0, np.sign(generic_vector(noise.size))))
         return max(norm(self.weights, sample) for sample in samples)
 
@@ -134,7 +134,7 @@ def relinearize(
     `guess`: about a multiple of the tangent.
 
     Refinement with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is factored. If
-    `signed`, it begins with a general error, which shrinks only if det M~ and det M have one sign.
+    `signed`, it begins with a generic vector, whose error shrinks only if det M~ and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None
@@ -170,7 +170,6 @@ def _refined(
                 break
             return None
         v = refinement.x
-        # A cheap bound of the norm comes first.
         longest += size
         size = refinement.error
         if size <= accuracy * longest and size <= accuracy * norm(weights, v):
@@ -213,10 +212,7 @@ class RefinedSystem:
 
 
 def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The point with exact solves.
-
-    Series need them: an error in a coefficient enters later ones.
-    """
+    """The point with exact solves, for series, where an error in a coefficient enters later ones."""
     if point.exact:
         return point
     apply = evaluator.differential(point.u)
@@ -228,7 +224,7 @@ def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearizati
         except EvaluationError:
             pass
         else:
-            # The nearby factorisation counts its solves.
+            # The nearby factorisation counts them.
             return evolve(point, anchor=Anchor(point.u, near.border, CountedSystem(trial, Counts())))
     return factored(evaluator, point)
 

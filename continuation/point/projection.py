@@ -22,13 +22,13 @@ from continuation.tolerance import Tolerance
 MaxStep = Callable[[Array, Array], float]
 
 ARC_PLACES = 0.31, 0.77
-"""Places where arc and path are compared: no symmetry of an S-bend or cubic aligns them."""
+"""Places where arc and path are compared; no symmetry of an S-bend or cubic relates them."""
 
 LATE = 0.93
-"""A further place for series: the end correction, a power of t, hides an S behind the others (2 of 1,500 S-bends)."""
+"""Another place for series: the end correction, a power of t, hides an S behind the others (2 of 1,500 S-bends)."""
 
 SLACK = 0.004
-"""Allowed distance, in arc lengths: that of a cubic that turns by one radian."""
+"""Largest distance of arc and path, in arc lengths: that of a cubic that turns by one radian."""
 
 MISSED, EVEN = 0.07, 1.5e-4
 """MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for an extrapolated cubic), an arc over an
@@ -36,12 +36,12 @@ S by as much. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a th
 of a third."""
 
 ARC_NOISE = 1e2
-"""Least allowed distance, in tolerances: noise on short arcs."""
+"""Least allowed distance, in tolerances, as short arcs are noisy."""
 
 CHORD_STEPS = Contraction()
 
 SMALL_INCREMENT = 1e-4
-"""Increment, in tolerances, that is accepted if round-off stops the iteration; after three factorisations it is 1."""
+"""Increment, in tolerances, accepted where round-off stops the iteration; after three factorisations 1 is."""
 
 
 @define(eq=False)
@@ -72,7 +72,7 @@ class PathSolver:
         """Bring a guess onto the path in the hyperplane orthogonal to `border`; return the point and the factorisation
         used.
 
-        A nearby factorisation serves while increments halve, then new ones. Raises `EvaluationError` if all fail.
+        The nearby factorisation serves while increments halve, then new ones. Raises `EvaluationError` if all fail.
         """
         evaluator = self.evaluator
         settled = self.settled(near, guess, border)
@@ -104,7 +104,7 @@ class PathSolver:
                 break
             if chord.error <= SIX_DIGITS:
                 return chord.x
-        # The stalled increment joins two points of round-off.
+        # A stalled increment is the difference of two round-offs.
         last = chord.size * min(chord.ratio, 1.0)
         if chord.size <= enough or (last <= 1.0 and last <= 2.0 * self.noise(near) / self.tolerance.relative):
             return chord.x
@@ -162,7 +162,7 @@ def arc_on_path(solver: PathSolver, arc: Arc, distance: float) -> Arc | None:
     c = first - p * d
     even = max(EVEN * length, noise)
     if max(distance, *(norm(weights, one) for one in off)) > even:
-        # An S shows in the middle. Measured from the cubic, errors share the factorisation's.
+        # An S shows in the middle. There the cubic of the errors has the factorisation's error, too.
         middle = a.approximate(-solver.evaluator.residual(segment.at(0.5)))
         if not norm(weights, middle - (c + 0.5 * d) / 16.0) <= even:
             return None

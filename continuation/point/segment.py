@@ -42,7 +42,7 @@ _SAMPLED = np.array(_QUARTERS)[:, None] ** _POWERS, _POWERS * np.array(_QUARTERS
 class PolynomialSegment:
     """``begin + c_1 t + c_2 t^2 + ...``; rows of `coefficients` are terms.
 
-    Terms are relative to the beginning, so that round-off is that of the way.
+    Terms are relative to the beginning, which keeps their digits.
     """
 
     begin: Array
@@ -50,7 +50,7 @@ class PolynomialSegment:
 
     @property
     def inside(self) -> tuple[float, ...]:
-        """The quarters. Between them no oscillation is missed: a cubic's derivative changes sign at most twice."""
+        """The quarters: a cubic's derivative changes sign at most twice, so no oscillation lies between them."""
         return _QUARTERS
 
     def at(self, t: float) -> Array:
@@ -103,9 +103,9 @@ class Curve(Protocol):
 
 @frozen(eq=False)
 class SeriesSegment:
-    """A series at the first point, made to end on the second.
+    """A series at the first point, made to end on the second by adding t^power times the gap there.
 
-    The gap there is the first neglected term; t^power times the gap is added.
+    The gap is the first neglected term.
     """
 
     curve: Curve

@@ -19,7 +19,7 @@ FITTED_ORDER = 11
 """Largest order: powers of s magnify round-off by 1e4, by 1e8 at twice the order."""
 
 CHORD = Contraction()
-"""The current factorisation serves; divergence shortens the range."""
+"""Chord steps by the current factorisation; divergence shortens the range."""
 
 ROUNDS = 40
 """Limit of range changes."""

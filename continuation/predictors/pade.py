@@ -1,4 +1,4 @@
-"""Power series of the path, and vector Pade approximants beyond its radius of convergence."""
+"""Power series of the path, and vector Pade approximants, which reach beyond its radius of convergence."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from continuation.metric import INVERTIBLE
 from continuation.tolerance import Tolerance
 
 DEGREES = 6
-"""Successive orders compared."""
+"""Successive orders that are compared."""
 
 LONGEST_RANGE, LOOKS = 8.0, 25
 """Longest range, in ranges of the series, and its number of samples, a tenth apart."""
@@ -86,7 +86,7 @@ def approximant(coefficients: Array, weights: Array) -> Series:
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Series | None:
     """The approximant with the longest range, or None.
 
-    In the range successive orders agree, without a pole. A pole of one order alone is an artefact (Froissart doublet).
+    In the range successive orders agree and have no pole. A pole of one order alone is an artefact (Froissart doublet).
     """
     order = len(series) - 1
     if order < 4 or not np.isfinite(series_reach) or np.abs(series).max() * INVERTIBLE > 1.0:

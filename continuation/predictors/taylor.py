@@ -30,17 +30,17 @@ ORDERS = (8, 30)
 """Bounds of the chosen order: beyond 30 round-off removes the gain."""
 
 LARGEST_ORDER = 100
-"""The cost is quadratic; above about 60 nothing is gained."""
+"""The cost is quadratic; orders above 60 gain nothing."""
 
 LONGEST_STEP = 100.0
-"""Largest step, in the metric: polynomial paths have no last terms."""
+"""Longest step, in the metric, of a polynomial path, whose last terms vanish."""
 
 
 def best_order(n: int, accuracy: float) -> int:
     """The order of least work: (f + K) solves a step, steps proportional to accuracy^(1/K).
 
-    f = 4 + n/60 is at most a third slower than the best. (f + K) exp(L/K), L = -ln accuracy, is least at
-    K^2 = L (K + f).
+    f = 4 + n/60 is at most a third slower than the best. (f + K) exp(L/K), L = -ln accuracy, is least at K^2 = L (K +
+    f).
     """
     f = 4.0 + n / 60.0
     L = -math.log(accuracy)
@@ -49,7 +49,7 @@ def best_order(n: int, accuracy: float) -> int:
 
 
 def series_reach(coefficients: Array, accuracy: float, weights: Array) -> float:
-    """The step at which one of the last two terms reaches `accuracy`; one may vanish by symmetry."""
+    """The step at which one of the last two terms reaches `accuracy`; the other may vanish by symmetry."""
     measure = Tolerance(relative=accuracy).measure
     order = len(coefficients) - 1
     reach = LONGEST_STEP
@@ -83,7 +83,7 @@ class Taylor:
     rational: bool = field(default=False, validator=of_kind("True or False", lambda value: isinstance(value, bool)))
     memory: int = field(default=1, init=False)
     interior_fraction: ClassVar[float] = 0.9999
-    """Its error is far below the remaining distance."""
+    """The prediction's error is far below the remaining distance."""
 
     @property
     def references(self) -> tuple[str, ...]:

@@ -1,1 +1,1 @@
-"""One step: settings, start, attempt, acceptance, loop."""
+"""The tracer: settings, first point, attempts at a step, acceptance, loop."""

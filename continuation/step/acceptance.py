@@ -46,7 +46,7 @@ class Accepted:
 
 @frozen(eq=False)
 class Examiner:
-    """Decides whether arcs count."""
+    """Decides whether an arc counts."""
 
     solver: PathSolver
     settings: Settings
@@ -59,7 +59,7 @@ class Examiner:
     def examine(
         self, point: Linearization, state: State, attempt: Arrival, prediction: Prediction, landed: bool
     ) -> Accepted | Rejected:
-        """Return the arc to the arrival, or why it does not count.
+        """Return the arc to the arrival, or why it is rejected.
 
         `prediction`: the path between the points, if accurate. `landed`: whether the attempt aimed at the target.
         """
@@ -70,7 +70,6 @@ class Examiner:
         try:
             missed = _across(point, attempt, prediction) if landed else attempt.correction.distance
             if self.pieces is not None:
-                # Beyond a kink there is no path.
                 kink = first_zero(self.solver, self.pieces, state.signs, arc)
             if kink is not None:
                 arrival, landed = kink[0], False
@@ -85,7 +84,6 @@ class Examiner:
                 # A singular end loses rank by itself.
                 flipped = False
             elif index is not None:
-                # The path may end on another branch than the arc.
                 ends = ending.at in (EndsAt.TARGET, EndsAt.START_PARAMETER)
                 part = ending.arc if ends else arc
                 changed = part.b.orientation not in (0, orientation)
@@ -102,7 +100,7 @@ class Examiner:
             at = branch.point if branch is not None and within(arc, branch.point, ending.arc.b) else None
             found, monitors, explained = self._events_on(arc, ending, state, at)
             several = ending.limit is not None or (branch is not None and branch.rays is None)
-            # In a shorter arc eigenvalue count and events differ for other causes: poles of H_y or symmetry.
+            # In shorter arcs poles of H_y or symmetry make eigenvalue count and events differ.
             if not (explained or several) and attempt.h > SMALLEST * state.h:
                 return _rejected(attempt, Rejection.UNACCOUNTED)
         except EvaluationError as error:
@@ -132,7 +130,9 @@ class Examiner:
     def _events_on(
         self, arc: Arc, ending: ArcEnd, state: State, branch_point: Linearization | None
     ) -> tuple[list[tuple[int, Linearization]], tuple[float, ...], bool]:
-        """Events up to the first that is terminal, the monitors' end values, and whether events explain the arc."""
+        """Events up to the first terminal one, monitors at the end, and whether events explain the eigenvalues'
+        changes.
+        """
         solver, events, at, index = self.solver, self.settings.events, branch_point, self.branch_index
 
         def place(pair: tuple[int, Linearization]) -> float:
@@ -179,7 +179,7 @@ class Examiner:
 
 
 def within(arc: Arc, at: Linearization, end: Linearization) -> bool:
-    """Whether a point of the arc lies not beyond `end`."""
+    """Whether a point lies on the arc up to `end`."""
     return position(arc, at.u) <= position(arc, end.u)
 
 

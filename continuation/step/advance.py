@@ -48,7 +48,7 @@ SINGULAR_STRETCH = 1.19
 had 648 rejections and 9 stuck; with 1.1 to 1.5, 132 to 144 and none."""
 
 INSIDE = (Rejection.MIDPOINT, Rejection.CROSSINGS, Rejection.OTHER_BRANCH)
-"""Reasons that lie inside a landing's arc, so inside longer ones too."""
+"""Reasons to reject a landing that hold for longer arcs too."""
 
 NOISE_ASKED, NOISE_GROWN = (2, 12), 4.0
 """Attempts at one step after which H's noise is measured again; factor by which it must grow, since two measurements
@@ -68,7 +68,7 @@ class Moved:
 
 @frozen(eq=False)
 class Stopped:
-    """No step, and the path's limit if found."""
+    """The path ends without a step; `end`: its limit, if found."""
 
     verdict: Verdict
     end: Array | None = None
@@ -99,7 +99,6 @@ class Advance:
         self.target = Target(solver, settings.target)
         self.landing = None if settings.target is None else Landing(self.stepper, settings.target)
         self.examiner = Examiner(solver, settings, self.target, self.pieces)
-        # isinstance is slow: ask once.
         self.extent = settings.metric if isinstance(settings.metric, SupportsExtent) else None
 
     def advance(self, point: Linearization, state: State) -> Moved | Stopped:
@@ -121,7 +120,6 @@ class Advance:
             h = 1.0 + norm(point.weights, point.u)
         landing = self.landing and self.landing.attempt(point, prediction, h)
         if landing is not None:
-            # A long correction makes a landing unreliable too.
             if (
                 isinstance(landing, Arrival)
                 and controller.update(memory, self._measures(landing, prediction, 0)).accept
@@ -130,7 +128,6 @@ class Advance:
                 if isinstance(found, Accepted):
                     return self._moved(point, state, found, memory, state.h, ())
                 if found.reason in INSIDE:
-                    # A longer step contains the obstacle too, less visibly.
                     h = min(h, found.factor * landing.h)
             state = evolve(state, last_failed_landing=point.lam)
         rejected: tuple[Rejected, ...] = ()
@@ -162,7 +159,7 @@ class Advance:
                 return Stopped(verdict)
 
     def _noisier(self, point: Linearization, state: State, u: Array) -> State | None:
-        """The state with noise grown at u, or None."""
+        """The state with the noise found at u, or None if it has not grown."""
         evaluator, known = self.solver.evaluator, state.noise if state.noise.size else np.zeros(u.size - 1)
         try:
             evaluator.measure_noise(u, point.tangent, evaluator.residual(u))
@@ -179,12 +176,11 @@ class Advance:
         return evolve(state, noise=noise, tolerance=least)
 
     def _limit_ahead(self, point: Linearization, state: State) -> tuple[SingularLimit | None, State]:
-        """The end, if no step can reach it; the state remembers attempts."""
+        """The singular end, if the endgame finds one, and the state, which remembers the attempt."""
         limit = None
         if self.target.endgame_is_due(point, state):
             limit, state = self.target.endgame(point), evolve(state, last_failed_endgame=point.lam)
         if limit is not None and self.pieces is not None and not same_piece(self.pieces, state.signs, point, limit.u):
-            # The limit lies beyond this piece.
             limit = None
         if limit is not None and point.orientation == 0 and between(self.solver, point, limit.u):
             # Without determinants only eigenvalues show that the limit is on another branch.
@@ -289,5 +285,5 @@ class Advance:
     def _monitor_behind(self, event: Event, point: Linearization, before: float) -> float:
         g = event.monitor(point.u, point.tangent)
         moves = isinstance(event, TurningPoint) and abs(g) * math.sqrt(point.weights[event.component]) > STILL
-        # Zero, with the sign before.
+        # A tiny number with the sign before.
         return g if moves or not isinstance(event, TurningPoint) else float(np.sign(before) * np.finfo(float).tiny)

@@ -69,10 +69,7 @@ def observe_of(homotopy: Any) -> Callable[[Array, float], Mapping[str, float]] |
 def finish_of(
     homotopy: Any, given: Callable[[Array, float], Array | None] | None
 ) -> Callable[[Array, float], Array | None] | None:
-    """The given finish, else the homotopy's, or None.
-
-    ValueError unless it gives None or N finite numbers.
-    """
+    """The given finish, else the homotopy's, or None; ValueError unless it gives None or N finite numbers."""
     own = homotopy.finish if offers(homotopy, SupportsFinish) else None
     finish = own if given is None else given
     if finish is None:
@@ -97,7 +94,7 @@ FALSE_END = 1e-3
 def checked_end(evaluator: Evaluator, here: Array, y: Array, target: float | None) -> Array:
     """Return the end (y, lam) found by a `finish`; ValueError unless H vanishes there.
 
-    Each equation must be small relative to its terms, or as small as at the last point with the end's parameter, since
+    Each equation must be small relative to its terms, or no larger than at the last point with the end's parameter:
     terms such as x_i w_i may vanish.
     """
     end = np.append(y, here[-1] if target is None else target)

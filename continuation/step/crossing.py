@@ -1,9 +1,9 @@
 """Eigenvalues of H' along an arc, and the branch point where one changes sign.
 
-Let z(t) be an eigenvalue of M_a^-1 M(t), with the bordered matrices at the beginning of an arc and at t. The arc is
-*regular* if no real z changes by more than SPAN between samples, nor the outer of three samples add up to more than
-SPAN times the middle one: no branch crosses it then. It *crosses* a branch if one z vanishes like 1 - t / s at a branch
-point s (a power of it at a degenerate one) and no other z comes near zero. Other arcs are too long or off the path.
+Let z(t) be an eigenvalue of M_a^-1 M(t), with the bordered matrices at the beginning of an arc and at parameter t. The
+arc is *regular*, crossed by no branch, if no real z changes by more than SPAN between samples, and no outer of three
+samples add up to more than SPAN times the middle one. It *crosses* a branch if one z vanishes like 1 - t / s at a
+branch point s and no other z is near zero. Other arcs are too long, off the path, or have a `degenerate` point.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ TOLD = 0.25
 """Least reported change of an eigenvalue."""
 
 ONWARD = 0.1
-"""Extra sample beyond an arc that approaches a singular matrix, in arc lengths. A greater recovery of H' there shows a
-singular point on the arc."""
+"""Extra sample beyond an arc that approaches a singular matrix, in arc lengths: if H' recovers there, a singular point
+lies on the arc."""
 
 HALF, EIGHTHS = (0.5, 1.0), tuple(k / 8 for k in range(1, 9))
 """Sample parameters on a cubic, and on a longer series."""
@@ -64,8 +64,7 @@ BEST = 4.0 / 3.0
 1."""
 
 SMALLEST = 2.0**-6
-"""Least part of an arc searched for pairs of crossings, and least factor of a step: crossings near the beginning may be
-round-off."""
+"""Least part of an arc searched for pairs of crossings, and least factor of a step: nearer ones may be round-off."""
 
 
 @frozen(eq=False)
@@ -119,7 +118,7 @@ def _differential(solver: PathSolver, u: Array) -> Callable[[Array], Array] | No
 class _Looks:
     """Samples of the eigenvalues of H' along one arc.
 
-    `told`: Large changes 1 - z by parameter. `along`: Sum of their last eigenvectors, for start vectors.
+    `told`: large changes 1 - z, by parameter. `along`: sum of the last eigenvectors, added to start vectors.
     """
 
     solver: PathSolver
@@ -176,7 +175,6 @@ class _Looks:
                 t = near[0]
                 return self._branch_point(t, t / told[t][-1]) or self.rejected(Rejection.CROSSINGS, t)
             if cubic and left[-1] < 1.0 - TOLD:
-                # A series has enough samples.
                 onward = self.look(arc.segment.at(1.0 + ONWARD), 1.0)
                 if 1.0 - max([TOLD, *onward]) > (1.0 + ONWARD) * left[-1]:
                     return self.rejected(Rejection.ORIENTATION, 0.5)
@@ -186,7 +184,7 @@ class _Looks:
         return found
 
     def _nearer(self) -> list[float]:
-        """Sample toward the beginning while a pair of crossings makes an eigenvalue grow."""
+        """Sample toward the beginning as long as an eigenvalue grows, as before a pair of crossings."""
         told, places = self.told, list[float]()
         t = min((place for place, there in told.items() if there and there[0] < LOWEST), default=0.0)
         while t > SMALLEST and told[t] and told[t][0] < LOWEST:
@@ -198,16 +196,15 @@ class _Looks:
         return places
 
     def over(self, seen: BranchPointOnArc) -> Crossed | Rejected | None:
-        """The branch point, if crossed along its branch; None if the arc ends before."""
+        """The branch point, if the arc follows its branch over it; None if the arc ends before."""
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
-        # Half of a crossing's digits are known.
+        # A branch point at the end is known to half of the digits.
         if self.ends and 1.0 < s <= 1.0 + SIX_DIGITS:
             return None
         if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
             return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
         if self.flipped != (s < 1.0 and seen.odd):
-            # The arc ends on another branch.
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
         if not all(_as_expected(mu, seen.expected(t, s), seen.lost) for t, mu in told.items()):
@@ -229,7 +226,7 @@ class _Looks:
         return Rejected(attempt.h, reason, contraction=attempt.correction.contraction, factor=factor)
 
     def blurred(self) -> bool:
-        """Whether z is noise even at the beginning, as near poles."""
+        """Whether round-off changes z even at the beginning, as near poles."""
         a = self.arc.a
         blur = self.solver.noise_by_component(a) * np.sign(generic_vector(a.u.size))
         # The factorisation may be of a point nearby: eigenvalues differ from one already.
@@ -292,7 +289,7 @@ class _Looks:
 
 
 def _as_expected(told: list[float], expected: float, lost: int) -> bool:
-    """Whether eigenvalues vanish together, and no other is near zero."""
+    """Whether `lost` eigenvalues vanish as expected, and no other is near zero."""
     first, *others = sorted(told, key=lambda mu: abs(mu - expected)) or [min(expected, TOLD)]
     others = [mu for k, mu in enumerate(others, 1) if k >= lost or abs(mu - first) > NEAR_CROSSING * abs(first)]
     near = abs(first - expected) <= MOST * abs(1.0 - expected) + EIGENVALUE_ACCURACY * expected

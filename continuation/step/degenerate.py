@@ -1,7 +1,7 @@
 """Degenerate branch points: branches touch, more than two cross, or H' loses several ranks.
 
 The eigenvalue z of M_a^-1 M behaves like (1 - t / s)^m with m > 1, or several vanish together. The secant method finds
-s and m, since z / z' has a simple zero at s with slope 1 / m. The path goes straight on.
+s and m: z / z' has a simple zero at s with slope 1 / m. The path goes straight on.
 """
 
 from __future__ import annotations
@@ -93,7 +93,6 @@ def degenerate_point(
         _, beyond = _left(beside, ahead, FIRST_ORDER)
         order = max((ahead - t) / (beyond - left), 1.0)
         touching = order > SIMPLE_ORDER and lost == 1
-        # Points on the path may cost factorisations.
         t, last = ahead - order * beyond, np.inf
         place, u = t, arc.a.u
         while 0.0 < t < FARTHEST:
@@ -109,7 +108,7 @@ def degenerate_point(
                 break
             last, t = left, t - order * left
         if touching:
-            # Branches were closer than what is known of u. Half of the digits of z are all that a path is known to.
+            # The branches are closer than u is accurate; at a double root z has half of its digits.
             u, solve = _at_double_root(solver, u, arc.a.border)
             z = at(place, u)
             if abs(z) <= max(ROOT_OF_ROUND_OFF, _blur(solver, u, z, partial(at, place), solve, arc.a.weights)):
@@ -121,9 +120,9 @@ def degenerate_point(
 
 
 def _at_double_root(solver: PathSolver, u: Array, border: Array) -> tuple[Array, Callable[[Array], Array]]:
-    """The point after Newton's increment, taken twice, if H is smaller there, as at a double root; and its solver.
+    """The point after twice Newton's increment if H is smaller there, as at a double root; and a solver at u.
 
-    Near the kernel of H', along which H hardly changes, only a solver from there shows how far round-off reaches.
+    H hardly changes along the kernel, so only a matrix from there shows how far round-off reaches.
     """
     evaluator = solver.evaluator
     r = evaluator.residual(u)

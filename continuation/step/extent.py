@@ -1,7 +1,7 @@
-"""Extent: how far each component goes before the path turns; it gives scales and step.
+"""Extent: how far each component goes before the path turns; it gives scales and the first step.
 
-Simplified Newton corrections d, e at u + h v, v the tangent, measure nonlinearity independently of units and origin
-(Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). |d_i| / (h |v_i|), in the median, is the
+Simplified Newton corrections d at u + h v and e at u + h v + d, v the tangent, measure nonlinearity in any units and
+origin (Deuflhard, Newton Methods for Nonlinear Problems, Sections 2.1 and 5.1). The median of |d_i| / (h |v_i|) is the
 path's turn, |e| / |d| the equations' change.
 """
 
@@ -46,19 +46,19 @@ STRAIGHT_LENGTH = 1e30
 """A path straight to this length, in units of its start, has no scale."""
 
 STANDSTILL = 1e-60
-"""Part of the largest motion below which a component stands still."""
+"""A component that moves less, relative to the fastest, stands still."""
 
 STILL_PIECEWISE = 1e-13
-"""STANDSTILL on pieces, which have round-off of other components."""
+"""STANDSTILL for piecewise homotopies, whose tangents carry round-off of other components."""
 
 SUSPECT, REPLACED = 1e-8, 0.1
 """A smaller tangent component, relatively, is round-off if refinement changes it by more than the second."""
 
 UNCERTAIN = 100.0
-"""Corrections below this multiple of round-off are ignored."""
+"""Corrections below this multiple of their round-off are ignored."""
 
 OTHER_UNITS = 1e4
-"""A larger nonlinearity shows wrong units; six symmetric trunks had 0.2 to 1,100."""
+"""A larger nonlinearity shows wrong units; six symmetric branches had 0.2 to 1,100."""
 
 
 def initial_extent(
@@ -69,10 +69,10 @@ def initial_extent(
     room: float = np.inf,
     sizes: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Return how far each component goes until the path turns or reaches the target; and its noise.
+    """Return how far each component goes until the path turns or reaches the target, and its noise, shape (N + 1,).
 
-    Components that stand still get the median. `residual`: H at the point.
-    `room`: distance to an end value. `sizes`: of the components. Arrays have shape (N + 1,).
+    Components that stand still get the median. `residual`: H at the point. `room`: distance to a terminal value.
+    `sizes`: of the components.
     """
     u, v = point.u, point.tangent
     whole, gap = np.inf, np.inf if target is None or target == point.lam else target - point.lam
@@ -91,7 +91,7 @@ def initial_extent(
     # The shortest length that changes a component by its size is safest.
     changed = np.abs(u[moving]) / size[moving]
     nearest = float(changed[changed > 0.0].min(initial=whole)) if np.isinf(whole) else whole
-    # At zero, terms show no noise: measure it ahead.
+    # At zero the terms of H have no round-off: measure it ahead.
     ahead = SEARCH_START * length if not u[:-1].any() else 0.0
     way = (nearest if np.isfinite(nearest) else length) * v
     try:
@@ -101,13 +101,13 @@ def initial_extent(
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
     blur = np.maximum(_largest([_held(v, given, z) for z in samples]), np.spacing(np.abs(u)))
     if near:
-        # Round-off of the tangent is round-off of the way.
+        # Round-off of the tangent moves the point ahead.
         blur = np.maximum(blur, ahead * np.abs(given - v))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
     size, moving = np.abs(v), v != 0.0
     seen = blur
     if np.count_nonzero(moving) > 1:
-        # The component in the median shows no noise: it has as much of its motion as the next.
+        # The median component has no noise by construction: take the next larger ratio of noise to motion.
         seen = np.maximum(blur, size * np.partition(blur[moving] / size[moving], 1)[1])
     unseen = UNCERTAIN * seen
     h = SEARCH_START * length
@@ -163,8 +163,8 @@ def initial_extent(
 
 
 def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Array) -> float:
-    """Factor for the sizes of components that stand still, so that H is about linear: too large ones would make a
-    branch of a symmetric trunk short.
+    """Factor for the sizes `z` of components that stand still, with which H is about linear: larger ones shorten a
+    branch.
     """
     h, moved = 1.0, z > 0.0
     for _ in range(LENGTHS_TRIED):
@@ -183,7 +183,7 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array) -> Array:
     """The tangent, with zeros for round-off.
 
-    A tiny component may have another unit; refinement with H' nearby decides, and with H at length h, if given.
+    A tiny component may have another unit: refinement by H' nearby tells, and by H at length h, if given.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -195,13 +195,12 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
     try:
         apply = evaluator.differential(beside)
     except EvaluationError:
-        # Outside the domain.
         apply = evaluator.differential(point.u)
     if apply is None:
         return v
     replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
     if h:
-        # At zero terms of H may cancel but for round-off.
+        # At zero, terms of H may cancel exactly.
         try:
             ahead = point.approximate(residual - evaluator.residual(point.u + h * np.where(small, 0.0, v))) / h
             replaced |= np.abs(ahead - v) > REPLACED * np.abs(v)
@@ -211,16 +210,16 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
 
 
 def _across(v: Array, given: Array, z: Array) -> Array:
-    """A correction without its part along the path, `given`: the median's of those that move in `v`."""
+    """The correction z without its part along the path: `given` times the median of z_i / v_i where v_i moves."""
     moving = v != 0.0
     across: Array = z - median(z[moving] / v[moving]) * given
     return across
 
 
 def _held(v: Array, given: Array, z: Array) -> Array:
-    """Noise beside one component, the median of those that move; of two, the one that `z` holds better.
+    """The noise z without its part along the path: of two middle ratios z_i / v_i, the smaller.
 
-    Half of each would blur the one that moves by what the other hardly does.
+    Their mean would give one component the noise of the other.
     """
     moving = v != 0.0
     parts = np.sort(z[moving] / v[moving])
@@ -243,7 +242,10 @@ def _nonlinearity(
     unseen: Array,
     apart: Array,
 ) -> tuple[Array, float]:
-    """The correction at u + h v across v, and the nonlinearity; `apart`: distance of u from the path."""
+    """The correction across v at u + h v, and the nonlinearity.
+
+    `apart`: distance of u from the path. Corrections below `unseen` are round-off.
+    """
     moving, there = v != 0.0, point.u + h * v
     unseen = np.maximum(unseen, UNCERTAIN * np.spacing(np.abs(there)))
 
@@ -256,7 +258,7 @@ def _nonlinearity(
     relative = np.abs(d[moving]) / (h * np.abs(v[moving]))
     turned = median(relative)
     if moving[-1]:
-        # Unknowns that move alike turn against the parameter only.
+        # If all unknowns turn alike, only the parameter's ratio differs from the median.
         turned = max(turned, 0.5 * float(relative[-1]))
     scale = np.maximum(h * np.abs(v), np.abs(d))
     scale[scale == 0.0] = 1.0

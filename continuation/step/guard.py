@@ -9,9 +9,9 @@ from continuation.point.arc import Arc
 
 
 class Guard(Protocol):
-    """A function that may reject an arc; the step is then shortened.
+    """A function that may reject an arc, whose step is then shortened.
 
-    Guards run last, on the arc up to the path's end; they do not see ends by `finish` or endgame.
+    Guards run last, on the arc up to the path's end; ends by `finish` or endgame are not shown to them.
     """
 
     def __call__(self, arc: Arc, /) -> str | None:

@@ -25,7 +25,6 @@ from continuation.step.state import State
 from continuation.tolerance import Tolerance, as_tolerance
 
 Finish = Callable[[Array, float], Array | None]
-"""Maps (y, lam) to the end y, or None."""
 
 
 class PartOptions(TypedDict, total=False):
@@ -34,7 +33,7 @@ class PartOptions(TypedDict, total=False):
     Parameters
     ----------
     preset : Preset, default DEFAULT
-        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or other: the next three parts.
+        `FAST`, `DEFAULT`, `CONSERVATIVE`, `SERIES` or another choice of the next three parts.
     predictor : Predictor, default None
         Replaces the preset's, like the next two.
     corrector : Corrector, default None
@@ -44,7 +43,7 @@ class PartOptions(TypedDict, total=False):
     events : sequence of Event, default ()
         Added to the homotopy's, turning points and branch points.
     guards : sequence of Guard, default ()
-        Functions of an arc that return why it does not count, or None; refused steps are shortened. Not archived.
+        Functions that take an arc and return a reason to reject it, or None; the step is then shortened. Not archived.
     check_jacobian : bool, default False
         Compare Jacobian and residual at the start; a wrong entry is a ValueError.
     examine : bool, default True
@@ -122,7 +121,7 @@ PART_OPTIONS = tuple(PartOptions.__annotations__)
 
 
 class Part(NamedTuple):
-    """Attributes required of an argument."""
+    """Attributes that an argument must have, and its name in messages."""
 
     attributes: tuple[str, ...]
     kind: str
@@ -205,7 +204,7 @@ def checked_target(target: Any) -> float | None:
 
 
 def each(name: str, values: Any, part: Part) -> None:
-    """Raise TypeError unless `values` is a sequence of such parts."""
+    """Raise TypeError unless `values` is a sequence of objects with the attributes of `part`."""
     if not isinstance(values, Sequence):
         raise complain(TypeError, name, f"a list of {name}", values)
     for value in values:

@@ -1,4 +1,4 @@
-"""Named choices of parts."""
+"""Presets: named choices of predictor, corrector and controller."""
 
 from __future__ import annotations
 

@@ -51,7 +51,6 @@ class Progress:
 
 
 def _bar(stream: TextIO, label: str) -> Any:
-    """A bar that tqdm draws at intervals, or None."""
     try:
         from tqdm import tqdm
     except ImportError:

@@ -23,10 +23,7 @@ Observe = Callable[[Array, float], Mapping[str, float]]
 
 
 def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
-    """A point's stored scalars: the homotopy's and the events'.
-
-    It raises `ValueError` if two have one name.
-    """
+    """The function that computes a point's stored scalars, of homotopy and events; ValueError if two have one name."""
     own = observe_of(homotopy)
     others = [event.observe for event in events if offers(event, Watcher)]
     if not others:
@@ -47,7 +44,7 @@ def observing(homotopy: Any, events: Sequence[Any]) -> Observe | None:
 
 @frozen(eq=False)
 class StepRecorder:
-    """Makes records, with `observe`'s scalars."""
+    """Makes `Step` records, with `observe`'s scalars."""
 
     evaluator: Evaluator
     observe: Observe | None

@@ -31,18 +31,8 @@ from continuation.tolerance import Tolerance, as_tolerance
 class Settings:
     """Everything that decides a path, except homotopy and start.
 
-    Attributes
-    ----------
-    predictor, corrector, controller, metric
-    events : tuple of Event
-        The homotopy's and the caller's, turning points, branch points.
-    guards : tuple of Guard
-    tolerance : Tolerance
-    budget : Budget
-    target : float or None
-    direction : int
-    examine : bool
-        Whether to watch turning points and branch points.
+    `events`: the homotopy's and the caller's, turning points, branch points. `examine`: whether to watch the latter
+    two.
     """
 
     predictor: Predictor
@@ -58,27 +48,17 @@ class Settings:
     examine: bool
 
     def index_of(self, kind: type) -> int | None:
-        """Index of the first event of a kind, or None.
-
-        Parameters
-        ----------
-        kind : type
-        """
+        """Index of the first event of a kind, or None."""
         return next((i for i, event in enumerate(self.events) if isinstance(event, kind)), None)
 
     @property
     def stops(self) -> list[tuple[int, float]]:
-        """Components and values that end the path."""
+        """Pairs (component, value) at which the path ends."""
         ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal > 0]
         return [*([] if self.target is None else [(-1, self.target)]), *((e.component, e.value) for e in ends)]
 
     def room(self, u: Array, v: Array) -> float:
-        """Distance along v to the nearest value that ends a path without target, or inf.
-
-        Parameters
-        ----------
-        u, v : ndarray, shape (N + 1,)
-        """
+        """Distance along v to the nearest terminal value of a path without target, or inf; u, v: shape (N + 1,)."""
         if self.target is not None:
             return math.inf
         ends = [event for event in self.events if isinstance(event, TargetValue) and event.terminal == 1]
@@ -86,12 +66,7 @@ class Settings:
         return float(min((gap / slope for gap, slope in known if gap * slope > 0.0), default=math.inf))
 
     def bound(self, evaluator: Evaluator) -> Settings:
-        """Bind events that need the evaluator; archives keep unbound ones.
-
-        Parameters
-        ----------
-        evaluator : Evaluator
-        """
+        """Bind events that need the evaluator; archives keep unbound ones."""
         known = (event.bound(evaluator) if isinstance(event, SupportsBound) else event for event in self.events)
         return evolve(self, events=tuple(known))
 
@@ -146,7 +121,7 @@ def _capped(controller: Any, longest: float | None) -> Any:
 def _box(homotopy: Any, asked: Options, start: Callable[[], Array]) -> tuple[Event, ...]:
     box: Any = asked["box"]
     if names_homotopy(box):
-        # A caller's target or events replace the box.
+        # A target or events of the caller replace the homotopy's box.
         said = asked["events"] or not names_homotopy(asked["target"])
         box = None if said else getattr(homotopy, "box", None)
     return () if box is None else faces(box, Labels.of(homotopy), start())

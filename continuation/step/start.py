@@ -39,7 +39,7 @@ CLEAR_OF_NOISE = 4.0
 single precision."""
 
 COARSEST = 0.1
-"""Tolerance if noise leaves no digit; later checks refute a worse start."""
+"""Tolerance if noise leaves no digit; later checks reject wrong starts."""
 
 PATIENT = BorderedNewton(reuse=0.0, max_iterations=20, max_contraction=math.inf)
 """From a guess increments may first grow."""
@@ -50,8 +50,8 @@ def first_point(
 ) -> tuple[Linearization, float]:
     """Return the corrected start with tangent, and a first step length.
 
-    `direction`: sign of the tangent's parameter component; 0: towards the target, else +1. `StartError`: wrong point;
-    SingularStartError: wrong problem.
+    `direction`: sign of the tangent's parameter component; 0: towards the target, else +1. Raises `StartError` if no
+    path is near, SingularStartError if H' loses rank.
     """
     evaluator, tolerance = solver.evaluator, solver.tolerance
     unit = np.append(np.zeros(u.size - 1), 1.0)
@@ -66,7 +66,7 @@ def first_point(
         residual = evaluator.residual(u)
         point, extent = measured(solver, _regular(evaluator, u, unit), metric, target, residual)
         off = judge.solve(residual)
-    # Unknowns that are no larger than the point is off the path are what a solver left of zeros: their size is no unit.
+    # Unknowns no larger than the start's error are zeros with a solver's round-off: they give no scale.
     while (left := _left_of_zero(point.u, off)).any():
         u = np.where(left, 0.0, point.u)
         try:
@@ -135,7 +135,7 @@ def _correct_start(solver: PathSolver, point: Linearization, u: Array, unit: Arr
 
 
 def _left_of_zero(u: Array, off: Array) -> NDArray[np.bool_]:
-    """Components that a Newton step, -off, replaces."""
+    """Nonzero components of which the Newton step -off changes more than the part `REPLACED`."""
     return np.asarray((u != 0.0) & (np.abs(off) > REPLACED * np.abs(u)))
 
 
@@ -193,7 +193,7 @@ def guessed(start: Any) -> Array:
 
 
 def arriving(path: Path) -> tuple[Array, Array]:
-    """A path's last point and its tangent or chord; `ValueError` without."""
+    """The last point of a path, with its tangent or the last chord; `ValueError` if it has neither."""
     before, last = [None, *path.steps[-2:]][-2:] if len(path.steps) else (None, None)
     if last is None:
         raise ValueError("start: expected a path with a point to go on from, found one without")

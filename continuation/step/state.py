@@ -17,8 +17,8 @@ class State:
     factorisation. `orientation`: determinant sign of the tangent. `h`: the next step length. `monitors`, `occurrences`:
     values and counts of the events; a monitor that vanishes at the point is 0. `origin`: the start, with metric
     `origin_weights`. `divergence_monitor`: see `continuation.ends.divergence`. `last_failed_landing`,
-    `last_failed_endgame`: parameter values, or inf. `index`: of the last step. `signs`: the piece ahead. `noise`: of
-    each equation, shape (N,), or (0,) without. `tolerance`: raised for noise, else 0.
+    `last_failed_endgame`: parameter values, or inf. `index`: of the last step. `signs`: of the switches ahead. `noise`:
+    of each equation, shape (N,), or (0,). `tolerance`: raised for noise, else 0.
     """
 
     history: tuple[Knot, ...]

@@ -21,7 +21,7 @@ LOW_ORDER_FRACTION = 0.9
 Methods, 1997)."""
 
 SHORTENINGS, SHORTEST = 60, 0.1
-"""Limit of cuts at a boundary, and least factor: they go below any least step."""
+"""Limit of cuts at a boundary, below any least step, and least factor of one."""
 
 TANGENT = 1e-6
 """Accuracy of the tangent, in tolerances."""
@@ -29,10 +29,7 @@ TANGENT = 1e-6
 
 @frozen(eq=False)
 class Arrival:
-    """An attempt that arrived.
-
-    `angle`: between the tangents, radians.
-    """
+    """An attempt that reached the path; `angle`: between the tangents, radians."""
 
     h: float
     correction: Correction
@@ -60,7 +57,6 @@ class Stepper:
             room = self.fraction * max_step(point.u, prediction(h) - point.u)
             if room >= 1.0:
                 return h
-            # Curved predictions may need more cuts.
             h *= max(room, SHORTEST)
         return h
 

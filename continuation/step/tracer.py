@@ -146,7 +146,7 @@ class Tracer:
 
     @property
     def references(self) -> tuple[str, ...]:
-        """BibTeX of homotopy, parts and substitutes used."""
+        """BibTeX of homotopy, parts and replaced derivatives."""
         parts = (self.settings.predictor, self.settings.corrector, self.settings.controller)
         return unique((*references_of(self.homotopy, *parts), *sorted(self._evaluator.methods)))
 
@@ -173,7 +173,6 @@ class Tracer:
                 self._end(INTERRUPTED)
             raise Interrupted(self.path) from interrupt
         except BaseException as error:
-            # Leave a consistent path.
             if self.path.status is Status.TRACING:
                 self._end(abandoned(self._reason) if isinstance(error, GeneratorExit) else raised(error))
             raise

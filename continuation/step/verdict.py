@@ -22,8 +22,8 @@ from continuation.step.state import State
 class Verdict:
     """How a path ended.
 
-    `particulars` follow the status' sentence. `limit`: a singular end. `rejected`: last failures. `error`: a regular
-    end's bound.
+    `particulars` follow the status' sentence. `limit`: a singular end. `rejected`: the last failures. `error`: bound at
+    a regular end.
     """
 
     status: Status

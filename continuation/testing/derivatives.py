@@ -1,4 +1,4 @@
-"""Checks of derivatives: six digits, which difference quotients have and wrong formulas have not."""
+"""Checks of derivatives to six digits, which difference quotients have and wrong formulas have not."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from continuation.predictors.taylor import series_reach
 from continuation.testing.subject import Subject, compare, random_directions, reporting, require
 
 COMPARED_ORDER = 6
-"""Order of compared Taylor coefficients: a wrong recurrence shows at order 2 or 3."""
+"""Order of compared Taylor coefficients; a wrong recurrence shows at order 2 or 3."""
 
 CANCELLED_ENTRY = 1e-10
 """Error of a cancelling entry, relative to the largest."""
@@ -51,8 +51,7 @@ def bordered(subject: Subject) -> None:
             with reporting("bordered", place.where):
                 system = subject.homotopy.bordered(place.y, place.lam, border.copy())
                 z = np.asarray(system.solve(b[:-1].copy(), float(b[-1])), dtype=float)
-            # Relative to each equation's terms, since their sum may cancel, and to 1e-7 of the largest possible term,
-            # which may be round-off.
+            # Relative to an equation's terms, which may cancel, and to 1e-7 of the largest possible one (round-off).
             largest = np.abs(whole).max(axis=1) * float(np.abs(z).max())
             allowed = ROOT_OF_ROUND_OFF * (np.abs(whole) @ np.abs(z) + np.abs(b) + 1e-7 * largest)
             compare("bordered", place, "the solution's equation", whole @ z, b, allowed)

@@ -33,7 +33,7 @@ LONGEST_PATH = 60
 """Steps of the traced path."""
 
 STEPS_WITHOUT_TARGET = 12
-"""Steps without a target, as the path may leave the homotopy's region."""
+"""Steps without a target, after which the path may leave the homotopy's region."""
 
 
 class CheckFailure(AssertionError):
@@ -179,7 +179,7 @@ class Subject:
 
 
 def compare(name: str, place: TestedPoint, what: str, found: Any, expected: Any, allowed: Array | float = 0.0) -> None:
-    """End a check unless numbers have one shape and agree, by default bit for bit."""
+    """End a check unless two arrays have one shape and agree, by default bit for bit."""
     found, expected = np.asarray(found, dtype=float), np.asarray(expected, dtype=float)
     shapes = f"expected shape {expected.shape}, found {found.shape}"
     require(found.shape == expected.shape, f"{name}: {place.where} {shapes}")
@@ -205,4 +205,3 @@ def random_directions(n: int, count: int, seed: int) -> list[Array]:
 
 
 Examination = Callable[[Subject], None]
-"""A check; raises `CheckFailure`."""

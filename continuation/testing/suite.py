@@ -13,7 +13,6 @@ from continuation.testing import derivatives, paths, pieces, protocol
 from continuation.testing.subject import CheckFailure, Examination, Subject
 
 PASSED, FAILED, EXPECTED, NOT_RUN = "passed", "failed", "failed as expected", "not run"
-"""Outcomes of a check."""
 
 
 @frozen(eq=False)

@@ -14,21 +14,8 @@ from problems.bibliography import BRATU
 from problems.options import finite_or_none, positive_integer, quiet
 
 
-class Bratu:
-    """What Bratu's problems share."""
-
-    box: ClassVar[Box] = {"y": (None, 8.0)}
-    parameter_name: ClassVar[str] = "lambda"
-    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
-    references: ClassVar[tuple[str, ...]] = (BRATU,)
-
-    def observe(self, y: Array, lam: float) -> dict[str, float]:
-        """Maximum of u."""
-        return {"max_u": float(np.max(y))}
-
-
 @frozen
-class Bratu1D(Bratu):
+class Bratu1D:
     """u'' + lam e^u = 0 on (0, 1), u(0) = u(1) = 0, by second-order differences, from u = 0 at lam = 0.
 
     ``H_i = u_{i-1} - 2 u_i + u_{i+1} + h^2 lam e^{u_i}``, h = 1/(n + 1). The path turns at lam* = 3.5138... and returns
@@ -48,6 +35,10 @@ class Bratu1D(Bratu):
 
     n: int = field(default=100, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
+    box: ClassVar[Box] = {"y": (None, 8.0)}
+    parameter_name: ClassVar[str] = "lambda"
+    problem_class: ClassVar[str] = "nonlinear boundary-value problems, discretised"
+    references: ClassVar[tuple[str, ...]] = (BRATU,)
 
     def start(self) -> tuple[Array, float]:
         """Zero at lam = 0."""
@@ -57,16 +48,16 @@ class Bratu1D(Bratu):
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (n,)."""
         u = np.concatenate((np.zeros(1), y, np.zeros(1)))
-        return u[:-2] - 2.0 * y + u[2:] + self._square * lam * np.exp(y)
+        return u[:-2] - 2.0 * y + u[2:] + (1.0 / (self.n + 1.0) ** 2) * lam * np.exp(y)
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Banded, Array]:
         """(H_y, H_lam): tridiagonal; shape (n,)."""
-        slope = self._square * np.exp(y)
+        slope = (1.0 / (self.n + 1.0) ** 2) * np.exp(y)
         bands = np.ones((3, self.n))
         bands[1] = lam * slope - 2.0
         return Banded(bands, 1, 1), slope
 
-    @property
-    def _square(self) -> float:
-        return 1.0 / (self.n + 1.0) ** 2
+    def observe(self, y: Array, lam: float) -> dict[str, float]:
+        """Maximum of u."""
+        return {"max_u": float(np.max(y))}

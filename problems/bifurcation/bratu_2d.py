@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,7 +11,8 @@ from attrs import field, frozen
 from scipy.sparse.linalg import LaplacianNd
 
 from continuation.arrays import Array, Matrix
-from problems.bifurcation.bratu_1d import Bratu
+from continuation.events.box import Box
+from problems.bifurcation.bratu_1d import Bratu1D
 from problems.options import finite_or_none, positive_integer, quiet
 
 
@@ -23,7 +24,7 @@ def five_point(m: int) -> Matrix:
 
 
 @frozen(eq=False)
-class Bratu2D(Bratu):
+class Bratu2D:
     """Laplacian(u) + lam e^u = 0 on the unit square, u = 0 on its edge, by the five-point formula.
 
     ``H = h^2 (Laplacian_h u + lam e^u)``, h = 1/(m + 1), points by rows. The path turns at lam* = 6.808... and returns
@@ -43,6 +44,10 @@ class Bratu2D(Bratu):
 
     m: int = field(default=20, validator=positive_integer)
     target: float | None = field(default=None, validator=finite_or_none)
+    box: ClassVar[Box] = Bratu1D.box
+    parameter_name: ClassVar[str] = Bratu1D.parameter_name
+    problem_class: ClassVar[str] = Bratu1D.problem_class
+    references: ClassVar[tuple[str, ...]] = Bratu1D.references
 
     @cached_property
     def _pattern(self) -> tuple[Matrix, Any]:
@@ -61,18 +66,18 @@ class Bratu2D(Bratu):
         # Shifts accept complex numbers and jets.
         u = np.pad(y.reshape(self.m, self.m), 1)
         around = u[:-2, 1:-1] + u[2:, 1:-1] + u[1:-1, :-2] + u[1:-1, 2:]
-        equations: Array = around.ravel() - 4.0 * y + self._square * lam * np.exp(y)
+        equations: Array = around.ravel() - 4.0 * y + (1.0 / (self.m + 1.0) ** 2) * lam * np.exp(y)
         return equations
 
     @quiet
     def jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
         """(H_y, H_lam): CSC of order m^2; shape (m^2,)."""
-        slope = self._square * np.exp(y)
+        slope = (1.0 / (self.m + 1.0) ** 2) * np.exp(y)
         laplacian, diagonal = self._pattern
         matrix = laplacian.copy()
         matrix.data[diagonal] += lam * slope
         return matrix, slope
 
-    @property
-    def _square(self) -> float:
-        return 1.0 / (self.m + 1.0) ** 2
+    def observe(self, y: Array, lam: float) -> dict[str, float]:
+        """Maximum of u."""
+        return {"max_u": float(np.max(y))}

@@ -12,7 +12,7 @@ from problems.bibliography import FREUDENSTEIN_ROTH, RHEINBOLDT_BURKARDT
 from problems.options import finite_or_none, quiet
 
 _COEFFICIENTS = np.array([[-1.0, 1.0], [5.0, 1.0], [-2.0, -14.0], [-13.0, -29.0], [34.0, 10.0]])
-"""Of x2^3, x2^2, x2, 1 and lam - 1 in both equations."""
+"""Coefficients of x2^3, x2^2, x2, 1 and lam - 1 in both equations."""
 
 
 @frozen

@@ -1,1 +1,1 @@
-"""Ready studies for ``continuation chart``; an entry point names each module's function `studies`."""
+"""Ready studies for ``continuation chart``: functions `studies` of modules, named by entry points."""

@@ -17,8 +17,6 @@ from problems.charts import rivals
 from problems.charts.subjects import bratu, bratu_square, cosine, freudenstein
 
 Parts = dict[str, dict[str, Any]]
-"""Trace options by method label."""
-
 PARTS: dict[str, tuple[str, Parts]] = {
     "presets": ("presets", {
         preset.name: {"preset": preset}
@@ -70,7 +68,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     found: list[Study] = []
     for name, (title, parts) in PARTS.items():
         methods = [traced(label, budget=continuation.Budget(steps=3000), **options) for label, options in parts.items()]
-        # Users choose among presets: compare them on a sparse system, too.
         whole = name == "presets"
         square = [bratu_square({"smoke": 5, "moderate": 20, "full": 40}[size])] if whole else []
         shown = [one.name for one in (*square, problems[-1])]

@@ -105,7 +105,6 @@ def judged(problem: LCP, x: Array, counts: Counts, **more: Any) -> Answer:
     residual = problem.natural_residual(x) / size if np.isfinite(x).all() else np.inf
     solved = np.isfinite(residual) and lcp.certify(problem, x).solves(SOLVED_TO)
     message, traced = more.pop("message", ""), more.get("path")
-    # An unfinished path's status already tells the failure.
     unfinished = traced is not None and traced.status is not continuation.Status.REACHED_TARGET
     return Answer(
         counts,

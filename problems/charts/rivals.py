@@ -1,4 +1,4 @@
-"""Other ways to follow a curve: a plain loop, and packages where they are installed."""
+"""Other ways to follow a curve: a plain loop, and installed packages."""
 
 from __future__ import annotations
 
@@ -47,7 +47,6 @@ class _Curve:
         return np.asarray(self.subject.residual(u[:-1], float(u[-1])))
 
     def jacobian(self, u: Array) -> tuple[Any, Array]:
-        """H_y, a numpy or scipy matrix, and H_lam."""
         self.counts.factorizations += 1
         H_y, H_lam = self.subject.jacobian(u[:-1], float(u[-1]))
         return H_y.tosparse() if isinstance(H_y, Banded) else H_y, H_lam
@@ -162,7 +161,6 @@ FOLLOWERS: dict[str, tuple[str, Follow]] = {
     "PITCON (dense)": ("pysces", _pitcon),
     "bice": ("bice", _bice),
 }
-"""Module and adapter."""
 
 
 def curve_followers(compare: bool) -> list[Method]:

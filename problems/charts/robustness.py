@@ -21,7 +21,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     families = ("semidefinite", "N") if size == "smoke" else [name for name in FAMILIES if name != "obstacle"]
     methods = [
         *(path(one.title, one.make) for one in HOMOTOPIES.values()),
-        # The series takes several times longer.
         *((path("KKT, series", HOMOTOPIES["kkt"].make, preset=continuation.SERIES),) if size == "full" else ()),
         solver("KKT, finish", homotopy="kkt"),
         solver("solve, auto", restarts=5),

@@ -31,7 +31,6 @@ def studies(size: Size, compare: bool) -> Sequence[Study]:
     families = ("semidefinite",) if size == "smoke" else ("semidefinite", "scaled P", "obstacle")
     methods = [
         path("KKT", lcp.KKTHomotopy),
-        # The KKT series would take most of the study's time.
         *((path("KKT, series", lcp.KKTHomotopy, preset=continuation.SERIES),) if size == "full" else ()),
         path("Wang", lcp.WangHomotopy),
         path("Wang, series", lcp.WangHomotopy, preset=continuation.SERIES),

@@ -55,7 +55,7 @@ def _z(draw: Draw, n: int) -> Array:
 
 
 def _k(draw: Draw, n: int) -> Array:
-    """Z with A s > 0 for an s > 0, so K."""
+    """A Z-matrix with A s > 0 for an s > 0, so K."""
     A = -square(draw, n, st.integers(0, 2))
     np.fill_diagonal(A, 0.0)
     return _scaled(draw, A + np.diag(vector(draw, n, POSITIVE) - A.sum(axis=1)))

@@ -11,7 +11,6 @@ from problems.lcp.data.program import Program, from_qp
 from problems.lcp.matrix_strategies import ORDERS, POSITIVE, Draw, Order, matrices, vector
 
 KINDS = ("lower", "upper", "box", "free", "fixed")
-"""Kinds of bounds."""
 
 
 @st.composite

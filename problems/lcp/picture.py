@@ -11,7 +11,6 @@ from continuation.plot.along import plot_components
 from continuation.plot.drawing import COLOURS, TURN, Axes, require_matplotlib, tidy
 
 Solution = Any
-"""A `problems.lcp.Solution`."""
 
 
 def draw_solution(solution: Solution) -> Any:

@@ -28,7 +28,7 @@ from problems.lcp.homotopies.starts import inside_start, inside_vector
 from problems.lcp.homotopies.two_vector import Blend, TwoVectorHomotopy
 from problems.lcp.proof.certificate import Certificate, certify
 from problems.lcp.search.solver import solve as solve_affine
-from problems.nonlinear.start_checks import Function, Jacobian, check_jacobian_shape, value_at
+from problems.nonlinear.start_checks import Function, Jacobian, value_at
 from problems.options import check_budget, check_tolerance, quiet
 
 NEWTON_STEPS = 20
@@ -69,9 +69,7 @@ class MixedComplementarity:
         object.__setattr__(self, "upper", like.upper)
         without_equal_bounds(like.lower, like.upper)
         x = inside_start(like)
-        value_at(self.F, x)
-        if self.jacobian is not None:
-            check_jacobian_shape(self.jacobian, x)
+        value_at(self.F, x, self.jacobian)
 
     @property
     def n(self) -> int:

@@ -5,17 +5,18 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import numpy as np
-from attrs import frozen
+from attrs import Factory, field, frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from problems.bibliography import CHOW_MALLET_PARET_YORKE
 from problems.lcp.data.matrix_structure import scaled
-from problems.nonlinear.start_checks import FromPoint, Function, Jacobian
+from problems.nonlinear import start_checks
+from problems.nonlinear.start_checks import Derivative, Function, Jacobian, value_at
 from problems.options import quiet
 
 
-@frozen(eq=False, slots=False)
-class FixedPointHomotopy(FromPoint):
+@frozen(eq=False)
+class FixedPointHomotopy:
     """H(x, lam) = (1 - lam) F(x) + lam (x - a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
     Parameters
@@ -32,19 +33,32 @@ class FixedPointHomotopy(FromPoint):
     Chow, Mallet-Paret and Yorke, Math. Comp. 32, 1978.
     """
 
+    F: Function
+    a: Array = field(converter=start_checks.start_vector)
+    slope: Jacobian | None = None
+    value: Array = field(
+        init=False, repr=False, default=Factory(lambda self: value_at(self.F, self.a, self.slope), takes_self=True)
+    )
+    """F(a), shape (n,)."""
+    problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
+    target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (CHOW_MALLET_PARET_YORKE,)
+    start = start_checks.start
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (n,)."""
         return (1.0 - lam) * self.F(y) + lam * (y - self.a)
 
-    @quiet
-    def _jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(H_y, H_lam); H_y has the structure of F'."""
-        assert self.slope is not None
-        aside = np.full(y.size, lam)
-        return scaled(self.slope(y), 1.0 - aside, aside), y - self.a - self.F(y)
+    @property
+    def jacobian(self) -> Derivative | None:
+        """Maps (y, lam) to (H_y, H_lam), where H_y has the structure of F'; None without F'."""
+        slope, one = self.slope, np.ones(self.a.size)
+        return (
+            None
+            if slope is None
+            else quiet(lambda y, lam: (scaled(slope(y), (1.0 - lam) * one, lam * one), y - self.a - self.F(y)))
+        )
 
 
 def fixed_point(F: Function, a: Any, jacobian: Jacobian | None = None) -> FixedPointHomotopy:

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from attrs import frozen
+from attrs import Factory, field, frozen
 
-from continuation.arrays import Array, Matrix
+from continuation.arrays import Array
 from continuation.citation.bibliography import ALLGOWER_GEORG
 from problems.bibliography import KELLER_1978
-from problems.nonlinear.start_checks import FromPoint, Function, Jacobian
+from problems.nonlinear import start_checks
+from problems.nonlinear.start_checks import Derivative, Function, Jacobian, value_at
 from problems.options import quiet
 
 
-@frozen(eq=False, slots=False)
-class NewtonHomotopy(FromPoint):
+@frozen(eq=False)
+class NewtonHomotopy:
     """H(x, lam) = F(x) - lam F(a), from x = a at lam = 1 to F(x) = 0 at lam = 0.
 
     Parameters
@@ -33,18 +34,28 @@ class NewtonHomotopy(FromPoint):
     Methods, 2003.
     """
 
+    F: Function
+    a: Array = field(converter=start_checks.start_vector)
+    slope: Jacobian | None = None
+    value: Array = field(
+        init=False, repr=False, default=Factory(lambda self: value_at(self.F, self.a, self.slope), takes_self=True)
+    )
+    """F(a), shape (n,)."""
+    problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
+    target: ClassVar[float | None] = 0.0
     references: ClassVar[tuple[str, ...]] = (KELLER_1978, ALLGOWER_GEORG)
+    start = start_checks.start
 
     @quiet
     def residual(self, y: Array, lam: float) -> Array:
         """H, shape (n,)."""
         return self.F(y) - lam * self.value
 
-    @quiet
-    def _jacobian(self, y: Array, lam: float) -> tuple[Matrix, Array]:
-        """(F', -F(a))."""
-        assert self.slope is not None
-        return self.slope(y), -self.value
+    @property
+    def jacobian(self) -> Derivative | None:
+        """Maps (y, lam) to (F', -F(a)); None without F'."""
+        slope = self.slope
+        return None if slope is None else quiet(lambda y, lam: (slope(y), -self.value))
 
 
 def newton(F: Function, a: Any, jacobian: Jacobian | None = None) -> NewtonHomotopy:

@@ -1,4 +1,4 @@
-"""Residual, Jacobian matrix and multipliers at one point (X, T, p)."""
+"""An orbit's equations at one point."""
 
 from __future__ import annotations
 

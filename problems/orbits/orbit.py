@@ -1,4 +1,4 @@
-"""Periodic orbits of x' = f(x, p) by orthogonal collocation."""
+"""Periodic orbits by orthogonal collocation."""
 
 from __future__ import annotations
 
@@ -157,7 +157,7 @@ class PeriodicOrbit:
         states = explained(field, times, states, parameter)
         cut, period, grid = one_period(field, times, states, parameter, Asked(intervals, degree).grid)
         found = cls(f, cut, period, parameter, grid.mesh, degree, **beside)._corrected()
-        # What a simulation left of zeros is no size.
+        # A simulation's errors at zero give no size.
         changed = np.abs(found.states - cut).max(axis=0)
         rest = (changed > REPLACED * np.abs(cut).max(axis=0)) | (found.scale > np.abs(cut - cut[0]).max(axis=0))
         if rest.any():

@@ -72,7 +72,6 @@ def AmericanPut(
     and Schwartz, Rev. Financial Studies 14 (2001).
     """
     reach = width * volatility * sqrt(maturity)
-    # log(price / strike)
     x = np.linspace(-reach, reach, n + 2)
     payoff = strike * np.maximum(1.0 - np.exp(x), 0.0)
     h = 2.0 * reach / (n + 1)
@@ -91,7 +90,6 @@ def AmericanPut(
 
     def march(solver: Callable[[LCP, Any], Any]) -> Exercise:
         times = maturity * (np.arange(steps + 1) / steps) ** 2
-        # Crank-Nicolson alone oscillates at the payoff's corner.
         times = np.concatenate([[0.0, 0.5 * times[1]], [times[1], 0.5 * (times[1] + times[2])], times[2:]])
         values, edges = payoff.copy(), [strike]
         found: Any = None

@@ -69,7 +69,7 @@ def Arch(
                 *(mark("plot", side * edge * np.sin(angle), edge * np.cos(angle), color="0.3") for edge in joint),
                 mark("plot", side * r * np.sin(angle), r * np.cos(angle), color="#D55E00", label=label),
                 mark("plot", side * (r * np.sin(angle))[near], (r * np.cos(angle))[near], "ko", markersize=4),
-            ]  # fmt: skip
+            ]
 
         return picture(
             *half(-1.0, ""), *half(1.0, "line of thrust"),

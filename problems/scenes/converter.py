@@ -40,7 +40,6 @@ def Converter(
     """
     closed = np.clip(duty * n - np.arange(n), 0.0, 1.0)
     one, before, h = np.eye(n), np.roll(np.eye(n), -1, axis=1), period / n
-    # Periodic differences and means.
     difference, mean = one - before, 0.5 * (one + before)
     voltages = np.linalg.solve(capacity / h * difference + mean / load, mean)
 

@@ -60,7 +60,6 @@ def Cournot(
     return Scene(
         units={"quantities": "units", "price": "money a unit", "profits": "money"},
         unknowns=(Unknown("quantities", n, "who sells how much"),),
-        # Negative marginal profits.
         problem=lambda: MixedLCP(A, cost - intercept, np.zeros(n), np.full(n, capacity)),
         answer=answer, exact=exact, picture=drawn, rivals=QUADRATIC,
     )  # fmt: skip

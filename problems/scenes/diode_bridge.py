@@ -70,7 +70,7 @@ def DiodeBridge(
             "load voltage": abs(voltage) * part,
             "diode currents": np.array([i, 0.0, 0.0, i] if voltage > 0.0 else [0.0, i, i, 0.0]),
             "mean load voltage": 2.0 / pi * amplitude * part,
-        }  # fmt: skip
+        }
 
     def drawn(solution: Any) -> Picture:
         time = np.linspace(0.0, 2.0, 401)

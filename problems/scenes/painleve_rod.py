@@ -42,7 +42,6 @@ def PainleveRod(
     Painleve, C. R. Acad. Sci. Paris 121 (1895); Stewart, SIAM Review 42 (2000), section 3.
     """
     c, s = cos(angle), sin(angle)
-    # By default a = -.8480762.
     a, b = 1.0 + 3.0 * c * (c - friction * s), half_length * spin**2 * s - gravity
 
     def solved() -> Path:

@@ -17,13 +17,7 @@ Picture = Sequence[Mark]
 
 
 def draw(shown: Picture, axes: Any) -> None:
-    """Draw the marks in order.
-
-    Parameters
-    ----------
-    shown : sequence of mark
-    axes : matplotlib Axes
-    """
+    """Draw the marks in order."""
     for method, arguments, options in shown:
         getattr(axes, method)(*arguments, **options)
 

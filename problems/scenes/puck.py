@@ -54,7 +54,7 @@ def Puck(
         }  # fmt: skip
 
     def exact() -> Quantities:
-        """Unlike the pyramid, a round cone opposes the motion."""
+        """For the round cone, whose friction opposes the motion."""
         loss = friction * gravity * step
         if loss >= speed:
             return {"speed": 0.0, "friction against motion": mass * speed}

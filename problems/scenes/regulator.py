@@ -85,6 +85,5 @@ def Regulator(
         unknowns=(Unknown("forces", horizon, "what the drive does, now and later"),),
         problem=lambda: MixedLCP(H, distance * f, -bound, bound),
         answer=answer, exact=exact, picture=drawn,
-        # Distances from 0 to twice the scene's.
         solve=lambda: along(MixedLCP(H, none, -bound, bound), f, (0.0, 2.0 * distance or 1.0), x=none),
     )  # fmt: skip

@@ -23,7 +23,6 @@ from problems.scenes.pictures import Picture, draw
 Quantities = Mapping[str, Any]
 
 Units = Mapping[str, str]
-"""Unit of each quantity of the answer."""
 
 
 @frozen

@@ -48,7 +48,6 @@ def SnapThrough(
     ----------
     von Mises, Z. angew. Math. Mech. 3 (1923).
     """
-    # Load unit (N); the fold load in it.
     unit, top = stiffness * (rise / span) ** 3, 2.0 / (3.0 * sqrt(3.0))
     asked = load * 2.0 / (3.0 * sqrt(3.0))
 

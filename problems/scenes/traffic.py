@@ -66,7 +66,6 @@ def Traffic(side: Annotated[int, integer(2)] = 5, cars: Positive = 10.0, seed: S
 
     return Scene(
         units={"time": "minutes", "quickest way": "minutes", "loads": "hundred cars an hour"},
-        # There are far more routes than streets.
         unknowns=(
             Unknown("loads of streets", streets, "who drives where"),
             Unknown("times to the goal", side**2 - 1, "cars that come to a crossing leave it"),

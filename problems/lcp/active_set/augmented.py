@@ -23,15 +23,15 @@ from continuation.linear.symmetric import factor_cholesky
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER, MixedLCP, State
 
 MOST_PENALTY, PENALTY_GROWTH = 1e8, 10.0
-"""The largest penalty, and its growth with each change of multipliers; the first is objective over violations."""
+"""The largest penalty, and the growth at each change of multipliers; the first penalty is objective over violations."""
 
 STEPS_PER_CHANGE = 100
-"""Most Newton steps per change."""
+"""Most Newton steps for one set of multipliers."""
 
 
 @frozen(eq=False)
 class Saddle:
-    """A program: P, c, rows R x + d >= 0, x in [lower, upper]; where `free`, R x + d = 0."""
+    """A program: P, c, rows R x + d >= 0 (= 0 where `free`), x in [lower, upper]."""
 
     problem: MixedLCP
     P: Matrix
@@ -58,7 +58,7 @@ def _same(one: Matrix, other: Matrix) -> bool:
 
 @frozen(eq=False)
 class Penalised:
-    """The augmented Lagrangian, of rows, then bounds."""
+    """The augmented Lagrangian, with terms for rows, then bounds."""
 
     saddle: Saddle
     low: Array
@@ -77,7 +77,7 @@ class Penalised:
         return back
 
     def hessian(self, active: NDArray[np.bool_]) -> Matrix:
-        """The Hessian on the piece that violates these rows and bounds."""
+        """The Hessian where these rows and bounds are violated."""
         R, m = self.saddle.R, self.saddle.d.size
         part, diagonal = R[np.flatnonzero(active[:m])], self.sigma * active[m:] + 1.0 / self.weight
         penalised = self.sigma * (part.T @ part)
@@ -86,8 +86,9 @@ class Penalised:
         return np.asfortranarray(self.saddle.P + penalised + np.diag(diagonal))
 
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
-        """The zero of the piecewise linear derivative along a direction; `t` are values plus multipliers over
-        penalties, `dv` their change.
+        """The zero of the piecewise linear derivative along a direction.
+
+        `t`: values plus multipliers over penalties, `dv`: their change.
         """
         with np.errstate(all="ignore"):
             enters = np.concatenate([(self.low - t) / dv, (self.high - t) / dv])
@@ -103,7 +104,7 @@ class Penalised:
 
 
 def guesses(saddle: Saddle, counts: Counts, factoring: Factoring) -> Iterator[tuple[State, Array]]:
-    """Yield active sets and points near their solutions, one per change of multipliers; P is positive semidefinite."""
+    """Yield active sets and nearly solved points, one per change of multipliers, for a positive semidefinite P."""
     problem, m, n = saddle.problem, saddle.d.size, saddle.c.size
     low = np.append(np.zeros(m), problem.lower[:n])
     high = np.append(np.where(saddle.free, 0.0, np.inf), problem.upper[:n])
@@ -119,7 +120,7 @@ def guesses(saddle: Saddle, counts: Counts, factoring: Factoring) -> Iterator[tu
         x, t = found
         y = sigma * (t - np.clip(t, low, high))
         state = np.where(t < low, LOWER, np.where(t > high, UPPER, BETWEEN))
-        # A violated row holds; other multipliers are zero.
+        # A violated row is active; other multipliers are zero.
         state[:m] = np.where(saddle.free | (state[:m] == LOWER), BETWEEN, LOWER)
         yield np.roll(state, n), problem.clipped(np.append(x, -y[:m]))
         accurate = accurate / PENALTY_GROWTH

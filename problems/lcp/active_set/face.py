@@ -22,18 +22,18 @@ from problems.lcp.data.problem import BETWEEN, MixedLCP, State
 from problems.lcp.proof.compensated import row_terms
 
 SINGULAR_CONDITION = 1e-14
-"""Reciprocal condition of a singular face, whose solution has hardly a digit left."""
+"""Reciprocal condition of a singular face: its solution has hardly a digit left."""
 
 SINGULAR_SHIFT = 1e-8
-"""Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge more slowly."""
+"""Relative diagonal shift of singular faces: smaller ones lose digits, larger ones converge slowly."""
 
 
 @frozen(eq=False)
 class Face:
     """One face and its factored equations ``A x + shift x + q = 0``.
 
-    `inverse` solves the equations, or shifted ones. If `exact`, one solve gives the point. `shift` is zero on the
-    problem's own face.
+    `inverse` solves these, or shifted ones; if `exact`, one solve gives the point. `shift` is zero on the problem's own
+    face.
     """
 
     problem: MixedLCP
@@ -53,7 +53,7 @@ class Face:
             x = np.where(self.active, near, x)
         x = self._corrected(x, self.q if self.exact and standard else self.w(x))
         if not self.exact:
-            # The first one leaves the ratio of the shift to the least singular value.
+            # The first correction leaves the ratio of shift to least singular value.
             x = self._corrected(x, self.w(x))
         w = self.w(x)
         if not (finite(x) and finite(w)):
@@ -79,7 +79,7 @@ class Face:
 
 
 def exchanging(method: str = "auto") -> Factoring:
-    """Factorisations of faces, at last by SuperLU with row exchanges."""
+    """Factorisations of faces; the last resort is SuperLU with row exchanges."""
     return Factoring(method, weak_pivots=False)
 
 
@@ -103,7 +103,7 @@ class Faces:
         centre: Array | None = None,
         regular: bool = False,
     ) -> Face | None:
-        """The factored face of a state; None if its equations have no factors, or if `regular` and they are singular.
+        """The factored face of a state; None without factors, or if `regular` and singular.
 
         With a `centre` the face is that of the proximal problem, A + shift I and q - shift centre.
         """
@@ -131,7 +131,7 @@ class Faces:
         symmetric = len(block) > 1 and self.structure.symmetric
         if symmetric and (factor := _cholesky(block)) is not None:
             return factor, True
-        # The test costs a factorisation.
+        # Asking costs a factorisation.
         definite = symmetric and not regular and self.structure.semidefinite
         if not definite and (factor := _lu(block)) is not None:
             return factor, True
@@ -176,7 +176,7 @@ def _norm(block: Matrix) -> float:
 
 
 def _cholesky(block: Array) -> Factored | None:
-    """The factor; None if a pivot may be zero."""
+    """The Cholesky factor; None if a pivot may be zero."""
     factor = factor_cholesky(block)
     if factor is None:
         return None

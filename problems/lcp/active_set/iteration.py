@@ -39,8 +39,8 @@ class Ended(Enum):
 class Policy:
     """How long the iteration goes on.
 
-    `steps`: most corrections. `patience`: as `PATIENCE`. `singular`: this many singular faces are no steps; 0 ends at
-    the first one, None counts all.
+    `steps`: most corrections. `patience`: as `PATIENCE`. `singular`: so many singular faces are not counted as steps
+    (None: all are); 0 ends at the first one.
     """
 
     steps: int
@@ -80,8 +80,8 @@ def iterate(
 ) -> Iterated:
     """Correct an active set until it is right or given up.
 
-    `near` selects among a face's points. With a shift LCP(q - shift near, A + shift I) is solved. `judge`
-    recognises a solution; sets in `tried` are skipped.
+    `near` selects among a face's points. With a shift LCP(q - shift near, A + shift I) is solved. `judge` recognises a
+    solution; sets in `tried` are skipped.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x

@@ -1,7 +1,7 @@
 """A guess of the active set of a diffusion-like problem from coarser ones.
 
-Active sets move the contact boundary about one grid line a step, so guesses come from problems P'AP, P'q of algebraic
-multigrid.
+Active sets move the contact boundary by about one grid line a step, so the guess comes from problems P'AP, P'q of
+algebraic multigrid.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 COARSEST_ORDER = 200
-"""Smaller problems are not coarsened but corrected, at most this often; other levels get one correction."""
+"""Problems up to this order are not coarsened but corrected, at most this often; other levels get one correction."""
 
 LEAST_COARSENING = 0.8
-"""Coarsening stops if it keeps a larger share of the unknowns; a grid keeps half."""
+"""Coarsening stops if a larger share of the unknowns remains; a grid keeps half."""
 
 DAMPING = 0.8
 """Damping of Jacobi's method."""
@@ -59,7 +59,7 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
     state, steps = _interpolated(coarse, d[kept], factoring, counts)
     found = iterate(Faces(Structure(coarse), factoring=factoring), state, Policy(steps), counts=counts)
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
-    # Sweeps mend the lines that interpolation gets wrong.
+    # Sweeps correct errors of the interpolation.
     for _ in range(3):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
     return _states(problem, x), 1
@@ -72,7 +72,7 @@ def _states(problem: MixedLCP, x: Array) -> State:
 
 
 def _smooth(A: Matrix) -> Array:
-    """The vector that interpolation reproduces: d > 0 with A d near zero."""
+    """The vector d > 0 with A d near zero that interpolation reproduces."""
     d, diagonal = np.ones(A.shape[0]), A.diagonal()
     for _ in range(SMOOTHINGS):
         off = (A @ d) / diagonal

@@ -1,4 +1,4 @@
-"""Decides at which points of a path the finish is tried: active sets, from the point's own set."""
+"""When the finish is tried along a path: with active sets, from the point's own set."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from problems.lcp.active_set.finish import Finish
 from problems.lcp.active_set.iteration import Policy
 
 SPACING = 0.4
-"""The finish is tried each time that the parameter has fallen by this factor. On 80 planted problems 0.2, 0.4 and 0.6
-take 6,099, 5,567 and 5,844 factorisations."""
+"""The finish is tried each time the parameter has fallen by this factor. On 80 planted problems 0.2, 0.4 and 0.6 take
+6,099, 5,567 and 5,844 factorisations."""
 
 ON_PATH = Policy(steps=4, singular=12)
-"""Of 25 stacks (n = 40 to 496) 21 are solved in 3 s if singular faces count as steps, 23 if not."""
+"""21 of 25 stacks (n = 40 to 496) are solved in 3 s if singular faces count as steps, 23 if not."""
 
 
 @define(eq=False)
 class AlongPath:
-    """The `finish` of a homotopy whose first n unknowns are x: tries to solve the LCP now and then, as lambda falls."""
+    """The `finish` of a homotopy whose first n unknowns are x, tried as lambda falls."""
 
     finish: Finish
     homotopy: Any

@@ -22,7 +22,7 @@ Signature = tuple[int, ...]
 Rows = tuple[tuple[int, ...], ...]
 
 PERTURBATIONS = 400
-"""Perturbations tried before the answer `not decided`."""
+"""Perturbations tried before the answer "not decided"."""
 
 
 @matrix_class("N-bar", N_BAR)

@@ -27,12 +27,12 @@ Build = Callable[[ExactMatrix, Indices], list[Constraint]]
 
 
 def columns(matrix: ExactMatrix, support: Indices) -> list[list[int]]:
-    """The columns of the index set, row by row."""
+    """Columns of the index set, row by row."""
     return [[row[j] for j in support] for row in matrix.entries]
 
 
 def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
-    """The vector with `values` on the support and zeros elsewhere."""
+    """The vector of `values` on the support and zeros."""
     known = dict(zip(support, values, strict=True))
     return tuple(known.get(i, Fraction(0)) for i in range(n))
 

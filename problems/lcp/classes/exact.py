@@ -30,7 +30,7 @@ def _fraction(value: Any) -> Fraction:
 
 
 def over_common_denominator(values: Sequence[Fraction]) -> tuple[list[int], int]:
-    """Integers and the least positive scale with values = integers / scale."""
+    """Integers and the least positive scale: values = integers / scale."""
     scale = math.lcm(*(value.denominator for value in values))
     return [value.numerator * (scale // value.denominator) for value in values], scale
 
@@ -63,7 +63,7 @@ class ExactMatrix:
         if np.ma.isMaskedArray(A) and np.ma.getmaskarray(A).any():
             raise ValueError("A: expected real numbers, found a masked array with masked entries; fill them first")
         if sp.issparse(A):
-            # This only rejects bad input: its floats hold 53 bits.
+            # Rejects bad input; its floats, of 53 bits, are not used.
             sound_sparse("A", A)
             A = (A.astype(np.int64) if A.dtype.kind in "iu" and A.dtype.itemsize < 8 else A).toarray()
         dense = np.array(A, dtype=object)

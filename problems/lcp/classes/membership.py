@@ -92,12 +92,8 @@ ValueError
 
 
 def matrix_class(name: str, cited: str) -> Callable[[Callable[[ExactMatrix], Membership]], Callable[[Any], Membership]]:
-    """Decorate a test of exact matrices: it takes any matrix, and its answers have the class's name and source.
-
-    Parameters
-    ----------
-    name, cited : str
-        As in `Membership`.
+    """Decorate a test of exact matrices: it takes any matrix, and its answers have the class's `name` and `cited`
+    source.
     """
 
     def decorated(test: Callable[[ExactMatrix], Membership]) -> Callable[[Any], Membership]:
@@ -113,11 +109,11 @@ def matrix_class(name: str, cited: str) -> Callable[[Callable[[ExactMatrix], Mem
 
 
 MOST_CASES = 4096
-"""Most minors or linear programs of a test: some 0.1 s, order 12 where there is one for each index set."""
+"""Most minors or linear programs of a test: some 0.1 s; order 12 with one for each index set."""
 
 
 def undecided(cases: int) -> Membership:
-    """The answer of a test that has too many cases."""
+    """The answer of a test with too many cases."""
     return Membership(
         None, Evidence(f"the exact test is exponential in n and stops at {MOST_CASES} cases, found {cases}")
     )

@@ -17,7 +17,7 @@ EXACT_ORDER = "Mohan, Parthasarathy and Sridhar, Math. Oper. Res. 19 (1994) 618;
 SIGNS: Mapping[str, Callable[[int, int], bool]] = {
     "positive": gt, "nonnegative": ge, "negative": lt, "nonpositive": le, "nonzero": ne,
 }  # fmt: skip
-"""How a minor of the sign compares with zero."""
+"""Whether a minor compares with zero as the sign says."""
 
 Rule = Callable[[int], str]
 

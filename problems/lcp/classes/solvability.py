@@ -15,7 +15,7 @@ from problems.lcp.classes.simplex import Point, at_most, positive_point
 from problems.lcp.classes.sufficiency import is_row_sufficient
 
 LARGEST_COVER = 5
-"""Largest order for which complementary cones are subtracted: beyond, `MOST_CASES` programs rarely suffice."""
+"""Largest order for which complementary cones are subtracted; beyond, `MOST_CASES` programs rarely suffice."""
 
 Normals = list[list[int]]
 
@@ -25,8 +25,8 @@ def is_q0(matrix: ExactMatrix) -> Membership:
     """Q0: LCP(q, A) has a solution whenever it is feasible.
 
     Z and row sufficient matrices are Q0. Other A of order up to `LARGEST_COVER` are Q0 exactly if the full
-    complementary cones cover pos[I, -A]. Exact linear programs subtract the cones. A remaining q has a neighbourhood
-    that only cones of lower dimension meet, so that almost every right-hand side in it has no solution.
+    complementary cones cover pos[I, -A]; exact linear programs subtract the cones. A remaining q has a neighbourhood
+    that only cones of lower dimension meet: almost no right-hand side in it has a solution.
     """
     for name, test in _SUFFICIENT_FOR_Q0.items():
         if test(matrix).holds:
@@ -91,7 +91,7 @@ def _leftover(matrix: ExactMatrix, cones: list[Normals], region: Normals, progra
 
 
 def full_cones(matrix: ExactMatrix) -> list[Normals]:
-    """For each full-dimensional complementary cone of A the normals of its faces, pointing inwards."""
+    """For each full-dimensional complementary cone of A the inner normals of its faces."""
     n = matrix.n
     identity, cones = [[int(i == j) for j in range(n)] for i in range(n)], []
     for mask in (0, *index_sets(n)):

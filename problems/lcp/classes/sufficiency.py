@@ -31,7 +31,10 @@ def is_column_sufficient(matrix: ExactMatrix) -> Membership:
 
 @matrix_class("row sufficient", SUFFICIENT)
 def is_row_sufficient(matrix: ExactMatrix) -> Membership:
-    """Row sufficient: the transpose is column sufficient. Exactly then every KKT point solves LCP(q, A), for all q."""
+    """Row sufficient: the transpose is column sufficient.
+
+    Exactly then every KKT point solves LCP(q, A), for all q.
+    """
     return _sufficient(matrix.transpose, "A'")
 
 

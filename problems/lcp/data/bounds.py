@@ -14,8 +14,8 @@ from problems.options import expect_nowhere, real_array
 def bound_vector(name: str, value: Any, size: int, default: float) -> Array:
     """Bounds as a vector of shape (size,); the only infinity allowed is `default`.
 
-    `value` may be one number, or None for `default`. Raises `ValueError` if it is sparse, not real, of another length,
-    NaN, or the wrong infinity.
+    `value` may be one number, or None for `default`. `ValueError` if it is sparse, not real, of another length, NaN, or
+    the wrong infinity.
     """
     value = default if value is None else value
     if sp.issparse(value):

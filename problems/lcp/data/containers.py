@@ -26,17 +26,14 @@ ALONE = ""
 BOUNDS = ("lower", "upper")
 
 PROGRAM = ("P", "c", "G", "h", "A_eq", "b_eq", *BOUNDS, "rows_lower")
-"""The arguments of `from_qp`."""
-
 WANTED = ("A", "q", "x0", *PROGRAM)
-"""Names read from an HDF5 file."""
 
 
 def _numpy(file: str, allowance: Allowance) -> Mapping[str, Any]:
     if zipfile.is_zipfile(file):
         with zipfile.ZipFile(file) as archive:
             allowance.take("it", sum(part.file_size for part in archive.infolist()))
-    # A map is no larger than the file.
+    # A memory map takes no more than the file.
     stored = np.load(file, mmap_mode="r", allow_pickle=False)
     if not isinstance(stored, np.lib.npyio.NpzFile):
         return {ALONE: np.array(stored)}

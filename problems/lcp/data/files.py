@@ -1,6 +1,6 @@
 """Reads LCPs and vectors from files, with one-line errors.
 
-Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats one array.
+Containers (.npz, .json, .mat, .h5) hold named arrays, ``A`` and ``q``; other formats hold one array.
 """
 
 from __future__ import annotations
@@ -25,14 +25,11 @@ from problems.options import finite_vector, real_array, sound_sparse
 MATRICES = ("A", "P", "G", "A_eq")
 
 NONE = {"lower": -math.inf, "rows_lower": -math.inf, "upper": math.inf, "h": math.inf}
-"""Bounds that JSON's null stands for."""
+"""Bounds for which JSON's null stands."""
 
 
 class InputError(ValueError):
-    """A file that cannot be used.
-
-    `argument` is ``path``, or a vector's name.
-    """
+    """An unusable file; `argument` is ``path``, or a vector's name."""
 
     def __init__(self, argument: str, complaint: str) -> None:
         self.argument = argument
@@ -76,7 +73,7 @@ def read_vector(name: str, path: str | PathLike[str], size: int) -> Array:
 
 @contextmanager
 def _in_files(**files: str | PathLike[str]) -> Iterator[None]:
-    """Raise errors as `InputError` of the argument that they name, else of the first."""
+    """Turn errors into `InputError` of the argument that they name, else of the first."""
     try:
         yield
     except (ValueError, TypeError, OverflowError) as error:

@@ -12,10 +12,7 @@ from problems.lcp.data.problem import MixedLCP
 
 @frozen(eq=False)
 class WithoutFixed:
-    """A problem without its fixed unknowns.
-
-    `problem` is the rest, with q rounded; `kept` are its indices.
-    """
+    """A problem without its fixed unknowns: `problem` is the rest, with q rounded; `kept` are the indices."""
 
     whole: MixedLCP
     problem: MixedLCP

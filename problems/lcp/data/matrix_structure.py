@@ -1,4 +1,4 @@
-"""An LCP's matrix, its properties and derived matrices."""
+"""An LCP's matrix A, its properties and derived matrices."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from continuation.linear import Banded
 from problems.lcp.data.problem import LCP, MixedLCP, require_problem
 
 WIDEST_BAND = 16
-"""Most diagonals, gaps included, of a banded matrix."""
+"""Most diagonals of a banded matrix, gaps included."""
 
 FILL = 8.0
-"""Most terms of a sparse A'DA per entry of A and I; beyond, a system of order 2n replaces it."""
+"""Most terms of a sparse A'DA per entry of A and I; beyond, a system of order 2n replaces A'DA."""
 
 SEMIDEFINITE_SHIFT = 100 * float(np.finfo(float).eps)
-"""Diagonal shift per unknown with which semidefinite matrices pass Cholesky (Higham, Theorem 10.3)."""
+"""Diagonal shift, per unknown, that lets semidefinite matrices pass Cholesky (Higham, Theorem 10.3)."""
 
 
 LARGEST_SYMMETRIC_PART = 1000
@@ -60,7 +60,6 @@ def scaled_band(band: Banded, rows: float | Array, columns: Array, diagonal: Arr
 def _by_rows(band: Banded, values: float | Array) -> Array:
     """A row's value at the place of each entry: ``values[j + r - upper]`` at (r, j)."""
     n = band.shape[0]
-    # np.pad takes longer than a small face.
     padded = np.zeros(n + band.lower + band.upper)
     padded[band.upper : band.upper + n] = values
     step = padded.itemsize
@@ -165,7 +164,7 @@ class Structure:
 
     @cached_property
     def z_matrix(self) -> bool:
-        """Whether off-diagonal entries are <= 0: in n steps active sets reach the least feasible element, or fail."""
+        """Whether off-diagonal entries are <= 0: in n steps active sets reach the least feasible point, or fail."""
         A = self.problem.A
         entries = A.data if self.problem.sparse else A
         return bool(np.count_nonzero(entries > 0.0) == np.count_nonzero(A.diagonal() > 0.0))

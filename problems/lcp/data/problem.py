@@ -16,7 +16,7 @@ from problems.lcp.data.bounds import bound_vector, ordered_bounds
 from problems.options import finite_matrix, finite_vector
 
 State = NDArray[np.int8]
-"""`LOWER`, `BETWEEN` (which imposes w_i = 0) or `UPPER` for each index."""
+"""For each index `LOWER`, `BETWEEN` (which imposes w_i = 0) or `UPPER`."""
 
 LOWER, BETWEEN, UPPER = np.int8(-1), np.int8(0), np.int8(1)
 
@@ -90,7 +90,7 @@ class MixedLCP:
 
     @cached_property
     def fixed(self) -> NDArray[np.bool_]:
-        """Where lower = upper, shape (n,)."""
+        """Whether lower_i = upper_i, shape (n,)."""
         same: NDArray[np.bool_] = self.lower == self.upper
         return same
 
@@ -158,7 +158,6 @@ class MixedLCP:
         if self.standard:
             return active_state(np.where(state == BETWEEN, x > 0.0, w < 0.0))
         inside, above = state == BETWEEN, state == UPPER
-        # Fixed unknowns stay at the bound.
         low = np.where(inside, x <= self.lower, ~above & ((w >= 0.0) | self.fixed))
         return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
 

@@ -1,8 +1,8 @@
 """Exact scaling of rows and columns by powers of two.
 
 For positive diagonal R and C, LCP(q, A) and LCP(R q, R A C) have the same solutions up to units. Least squares of
-logarithms, then Ruiz's iteration, make the largest entries of rows and columns about 1, and give the same problem for
-all given units, up to rounding.
+logarithms, then Ruiz's iteration, make the largest entries of rows and columns about 1; the result is the same for all
+given units, up to rounding.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ GRADIENT_STEPS = 30
 """Conjugate gradient steps: full matrices need one, sparse random ones about ten."""
 
 HALVES = 1e-3
-"""Fractions this near to 1/2 are noise and round up."""
+"""Fractions this near to 1/2 are rounded up, as noise would decide."""
 
 NEGLIGIBLE = -27.0
-"""Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| are ignored: matrices exp(-d^2) have entries down to 1e-300."""
+"""Entries with |a_ij a_ji| < 2^-27 |a_ii a_jj| are ignored: those of exp(-d^2) go down to 1e-300."""
 
 
 @frozen(eq=False)
@@ -77,7 +77,6 @@ def balanced(problem: MixedLCP) -> Scaled | None:
     if not all(np.array_equal(_times(new, columns), old) for new, old in zip(bounds, given)):
         return None
     scaled = _by(problem, rows, columns, _times(problem.q, rows), *bounds)
-    # A balanced problem needs no units.
     scaled.problem.known["units"] = np.zeros_like(rows), np.zeros_like(columns)
     return scaled
 
@@ -122,7 +121,7 @@ def _units(problem: MixedLCP) -> tuple[Exponents, Exponents]:
     for _ in range(RUIZ):
         now = log + r[row] + c[column]
         r, c = r - 0.5 * _largest(row, now, zero), c - 0.5 * _largest(column, now, zero)
-    # Each connected part has a free factor, which makes its largest q_i one, or leaves its last row.
+    # The free factor of each connected part makes its largest q_i one, or leaves its last row.
     part_of_row, part_of_column = _parts(row, column, n)
     shift = np.zeros(2 * n)
     shift[part_of_row] = r

@@ -1,4 +1,4 @@
-"""The spread of entries decides on scaling."""
+"""The spread of entries, which decides on scaling."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EXTREME = 1e90
 """Products of three entries between this and its inverse are floats."""
 
 UNIT_SPREAD = 256.0
-"""Problems stay unscaled within this factor: units take 0.5 of 1.3 ms (n = 60), 0.25 of 0.45 s (n = 1000)."""
+"""Problems within this factor stay unscaled: units take 0.5 of 1.3 ms (n = 60), 0.25 of 0.45 s (n = 1000)."""
 
 
 def near_one(problem: MixedLCP) -> bool:
@@ -26,7 +26,7 @@ def alike(problem: MixedLCP) -> bool:
 
 
 def largest_entries(problem: MixedLCP) -> tuple[float, float]:
-    """The least and the largest among the largest absolute entries of all rows and columns of A."""
+    """The least and the largest of the largest absolute entries of all rows and columns of A."""
     if "range" not in problem.known:
         problem.known["range"] = _found_entries(problem)
     found: tuple[float, float] = problem.known["range"]

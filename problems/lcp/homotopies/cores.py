@@ -1,6 +1,6 @@
 """Solves the full linear system by a smaller core.
 
-Eliminating one unknown of each pair ``s v + x p = r`` (from x_i y_i = lambda c_i) leaves the core.
+The core is left when one unknown of each pair ``s v + x p = r`` (from x_i y_i = lambda c_i) is eliminated.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from continuation.linear import BorderedSystem, SingularError
 from continuation.linear.silence import without_warnings
 
 GAINED = 1e-3
-"""Largest relative first correction of an accepted core: four such corrections reach round-off."""
+"""Largest relative first correction of an accepted core: four corrections then reach round-off."""
 
 _silently = without_warnings(all="ignore")
 """A pair of zeros gives inf, which the factorisation reports."""
@@ -43,7 +43,7 @@ class Pairs:
     """Sign of the eliminated determinant."""
 
     def known(self, r: Array) -> tuple[Array, Array, Array]:
-        """What r adds to v, to p in other rows, and to p."""
+        """The solution for k = 0: v, what p adds to the rows, and p."""
         p = self.f * r
         return self.e * r, p, p
 
@@ -91,10 +91,8 @@ def parity(count: int | np.intp) -> int:
 class CoreSystem:
     """A bordered system solved by a quick or a robust core.
 
-    `apply` maps z to H' z; `sizes` are the scales of unknowns, shape (N,).
-
-    The quick core, smaller and symmetric, loses digits near zero pairs. The tangent's corrections decide which core
-    serves.
+    `apply` maps z to H' z; `sizes` are the scales of unknowns, shape (N,). The quick core, smaller and symmetric, loses
+    digits near zero pairs; the tangent's corrections decide which core serves.
     """
 
     apply: Callable[[Array], Array]

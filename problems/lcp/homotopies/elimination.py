@@ -162,7 +162,7 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
     rows, structure, n, m = homotopy.rows, homotopy.structure, homotopy.n, homotopy.rows.sides.index.size
     z1, gap, factor, rest = p[:m], q[:m], p[m : m + n], q[m : m + n]
     if not structure.problem.standard:
-        # Unbounded rows are dw + lam give dz2.
+        # Unbounded rows: dw + lam give dz2.
         factor, rest = np.where(rows.free, 1.0, factor), np.where(rows.free, system.lam * homotopy.give, rest)
     pairs = RowPairs.of_boxes(rows, factor, rest, p[m + n :], q[m + n :])
 

@@ -26,14 +26,14 @@ Parts: TypeAlias = "tuple[Array, Array, Array, Array, Array | float]"
 """(goal, origin, p, q, plain) at a point; without constants for a direction."""
 
 LARGEST_FALL = 1e-3
-"""Largest fall of a scale per step: ends at zero need a metric."""
+"""Largest fall of a scale per step, as ends at zero need a metric."""
 
 
 @frozen
 class RelativeMetric:
     """The mean square of relative changes, plus the parameter's.
 
-    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``. The mean makes step lengths independent of n. The scale of the
+    ``|v|^2 = (1/N) sum_i (v_i/u_i)^2 + lam v_{N+1}^2``; the mean makes step lengths independent of n. The scale of the
     first n unknowns is the distance from the nearer bound (`lower`, `upper`, default zero), or without bounds their
     size, at least `unit`.
     """
@@ -64,7 +64,7 @@ class RelativeMetric:
 
 
 class OwnMetric:
-    """A homotopy's metric; on its class, an LCP's."""
+    """The attribute `metric`: a homotopy's `own_metric`; on its class, an LCP's."""
 
     def __get__(self, homotopy: Any, owner: type) -> RelativeMetric:
         return RelativeMetric() if homotopy is None else homotopy.own_metric
@@ -72,7 +72,7 @@ class OwnMetric:
 
 @frozen(eq=False, slots=False)
 class System:
-    """H' at a point."""
+    """H' of the homotopy `of` at a point."""
 
     of: Any
     y: Array
@@ -145,13 +145,7 @@ def proof_engine(self: Any) -> ByProducts:
 
 
 def certify_end(self: Any, y: Array) -> str:
-    """A sentence on the exact solution near x, or "".
-
-    Parameters
-    ----------
-    y : ndarray
-        The end of a path.
-    """
+    """A sentence on the exact solution near the end y of a path, or ""."""
     return exact_end(self.problem, y[: self.n])
 
 

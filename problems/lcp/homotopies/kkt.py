@@ -21,10 +21,8 @@ from problems.lcp.homotopies.starts import Start, kkt_start, natural_units, requ
 from problems.options import quiet
 
 GIVE = 0.1
-"""Relaxation of equations at lambda = 1, in natural units.
-
-On 48 monotone problems paths take 32 factorisations; 34 with 0.01, 36 with 1.
-"""
+"""Relaxation of equations at lambda = 1, in natural units. On 48 monotone problems paths take 32 factorisations; 34
+with 0.01, 36 with 1."""
 
 
 @frozen(eq=False, slots=False, init=False)

@@ -25,7 +25,7 @@ LCPHomotopy = KKTHomotopy | TwoVectorHomotopy
 
 @frozen
 class Registered:
-    """One homotopy.
+    """A homotopy.
 
     `feasible`: whether its default start is strictly feasible. `example`: a paper example it solves. `bounds`: whether
     it takes bounds.

@@ -75,7 +75,7 @@ class Rows:
 
     @cached_property
     def ends(self) -> tuple[int, int, int]:
-        """Where the blocks x, z1 and z2 of y end."""
+        """The places where the blocks x, z1 and z2 of y end."""
         n, m = self.problem.n, self.sides.index.size
         return n, n + m, n + m + n
 
@@ -95,7 +95,7 @@ class Rows:
 
 @frozen(eq=False, slots=False)
 class RowPairs:
-    """The linearised rows, ``factor dw + rest k = r``, after elimination in boxes.
+    """The linearised rows, ``factor dw + rest k = r``, with boxes eliminated.
 
     In a box ``(u-l-z) dt - t dz = r3`` gives `inner`, and r loses `taken` r3; elsewhere k = dz.
     """

@@ -55,7 +55,7 @@ class Sides:
         return np.concatenate([(x - self.problem.lower)[self.low], (self.problem.upper - x)[self.high]])
 
     def pull(self, v: Array) -> Array:
-        """How the distances from the bounds change if x changes by v, along the last axis."""
+        """Changes of the distances for a change v of x, along the last axis."""
         return v if self.problem.standard else self.sign * v[..., self.index]
 
     def force(self, y: Array) -> Array:

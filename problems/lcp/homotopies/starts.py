@@ -19,10 +19,8 @@ from problems.lcp.proof.phase1 import strictly_feasible_start
 from problems.options import finite_vector
 
 START_DISTANCES = (1.0, 2.5)
-"""Decimal exponents of random starts' distances, in natural units or `typical_units`.
-
-Of 70 paths of hard problems (n = 100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1.
-"""
+"""Decimal exponents of random starts' distances, in natural units or `typical_units`. Of 70 paths of hard problems (n =
+100) 17 solve from 1 to 1.5 or further, 11 from 0.5 to 1."""
 
 LOG_DEVIATION = 0.5
 """Standard deviation of the logarithms; with 0 or 1 half as many paths solve."""
@@ -90,10 +88,7 @@ def natural_units(problem: MixedLCP) -> tuple[float, float]:
 
 
 def typical_units(problem: MixedLCP) -> tuple[float, float]:
-    """`natural_units` with the root-mean-square row norm.
-
-    KKT paths from here solve 18 of 40 piles of bodies, from natural units 17.
-    """
+    """`natural_units` with the root-mean-square row norm: KKT paths solve 18 of 40 piles of bodies, else 17."""
     return _units(problem, np.mean)
 
 

@@ -144,7 +144,6 @@ class TwoVectorHomotopy:
     @quiet
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
         """Factor the bordered matrix."""
-        # Callers may change their border.
         return factor_pairs(System.at(self, y, lam), border.copy())
 
 

@@ -12,9 +12,7 @@ from scipy.linalg.lapack import dgetrf, dgetrs
 from continuation.arrays import Array
 
 EXTENDED = 4096
-"""Largest block with residuals in extended precision: kinks of 10,000 integer problems (n <= 6) are then exact to
-1e-14.
-"""
+"""Largest block with residuals in extended precision: kinks of 10,000 integer problems (n <= 6) are exact to 1e-14."""
 
 
 class SingularBasisError(ValueError):

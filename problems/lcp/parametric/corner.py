@@ -14,17 +14,13 @@ from problems.lcp.pivoting.almost import Ended
 from problems.lcp.pivoting.starts import covering
 
 LARGEST_LISTED = 10
-"""Most switches for which all 2^m pieces are tried (30 ms), and largest order for all faces (0.1 s)."""
+"""Most switches with which all 2^m pieces are tried (30 ms), and largest order for all faces (0.1 s)."""
 
 
 def rays(S: Array, r: Array) -> list[Ray]:
     """All rays that are alone on their piece, including that of arrival; one of many switches, by Lemke's method.
 
-    Parameters
-    ----------
-    S : ndarray, shape (m, m)
-    r : ndarray, shape (m,)
-        The path arrived with e' = 1 and u' = r <= 0.
+    `S`, (m, m), `r`, (m,): the path arrived with e' = 1 and u' = r <= 0.
     """
     m = r.size
     if m > LARGEST_LISTED:

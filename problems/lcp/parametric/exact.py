@@ -77,7 +77,6 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
     expect(fine, "path", f"two points of {problem.n} unknowns at least", path)
     exact = _Exactly.of(problem, slope, Stairs.of(problem, levels))
     u = path.u
-    # Both ends hold a bound exactly.
     states = [exact.stairs.states(problem, 0.5 * a[:-1] + 0.5 * b[:-1]) for a, b in pairwise(u)]
     tied = {event.step: event.switches for event in path.kinks}
     held = {0: _mostly(u[1] - u[0]), len(u) - 1: _mostly(u[-1] - u[-2])}
@@ -95,7 +94,7 @@ def prove_path(problem: MixedLCP, d: Any, path: Path, level: Any = 0.0) -> Exact
 
 
 def _as_listed(path: Path, points: list[Exactly], states: list[State]) -> None:
-    """Check that events are kinks, rightly named, and nothing turns back."""
+    """Check that events are kinks with their names, and that nothing turns back."""
     kinks = {event.step: event for event in path.kinks}
     wrong = [e for e in path.events if kinks.get(e.step) is not e or not 0 < e.step < len(path) - 1]
     wrong += [e for e in path.kinks if not np.array_equal(e.u, path.u[e.step])]

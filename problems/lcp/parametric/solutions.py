@@ -26,7 +26,7 @@ from problems.lcp.search.solver import solve
 from problems.options import check_budget, check_seed, check_tolerance
 
 IN_VAIN = 30
-"""Directions in a row without a new solution, at least twice the number found, that end the search."""
+"""The search ends after so many directions in a row without a new solution, and twice the number found."""
 
 CORNERS_A_PATH = 50
 """Longest path, in kinks per unknown."""

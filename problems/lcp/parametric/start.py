@@ -43,7 +43,7 @@ def from_solution(
 ) -> Walk | None:
     """The walk from a solution along the ray nearest to `ray`, or with t going by `sign`; None without such a ray.
 
-    Raises `SingularBasisError` if its piece holds more rays.
+    Raises `SingularBasisError` if its piece holds several rays.
     """
     stairs = Stairs.of(problem, level)
     walk = Walk(problem, d, stairs, stairs.states(problem, x), problem.n, t, sign)

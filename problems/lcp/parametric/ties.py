@@ -13,16 +13,10 @@ from problems.lcp.parametric.walk import FLAT, Walk
 
 @frozen(eq=False)
 class Corner:
-    """A corner.
+    """A corner of a walk.
 
-    Attributes
-    ----------
-    switches : tuple of int
-        The pairs that switch.
-    directions : list of Array of shape (n + 1,)
-        All rays, if several pairs switch.
-    dead : bool
-        Whether only the ray of arrival exists.
+    `switches`: pairs that switch. `directions`: all rays, shape (n + 1,), if several pairs do. `dead`: whether only the
+    ray of arrival exists.
     """
 
     switches: tuple[int, ...]

@@ -12,12 +12,11 @@ from problems.lcp.parametric.basis import Basis
 from problems.lcp.parametric.stairs import Stairs
 
 FLAT = 1e-11
-"""Relative rates below this are rounding. Switches so close, relative to the step and t, vanish together: on 10,000
-integer problems 1e-13 to 1e-7 give the same; 1e-6 is too loose for cond X = 1e6.
-"""
+"""Smaller relative rates are rounding. Switches so close, relative to the step and t, vanish together: on 10,000
+integer problems 1e-13 to 1e-7 give the same; 1e-6 is too loose for cond X = 1e6."""
 
 ZERO_SWITCH = 1e-14
-"""Smaller switches, relative to their row's terms, and rates of t are zero."""
+"""Smaller switches and rates of t, relative to their row's terms, are zero."""
 
 OUTSIDE_LIMITS = 1e-9
 """Largest violation of limits by rounding, relative to the row."""
@@ -73,7 +72,7 @@ class Walk:
         rows = np.flatnonzero(self.moves_x)
         columns = np.append(rows[rows != j], np.full(int(j != n), n))
         if not by_x:
-            # Its w is the driver's distance from its corner.
+            # The driver's w is its distance from the corner.
             rows = np.append(rows, j)
             self.shares[j] -= self.slopes[0 if self.sign > 0.0 else 1, j]
         block = np.empty((n, columns.size), order="F")
@@ -102,7 +101,7 @@ class Walk:
         self.noise = np.array([[place], [motion]]) * self.terms
         self.noise[0] += np.where(self.moves_x, 0.0, np.abs(self.problem.q))
         self.still = False
-        # The rounding of a slow t is estimated.
+        # Rounding may be all that moves a slow t.
         if j != n and abs(self.dt) <= SIX_DIGITS * motion:
             of_t = np.abs(self.basis.inverse((columns == n).astype(float), transposed=1)) @ self.sizes[self.basis.rows]
             self.still = bool(abs(self.dt) <= ZERO_SWITCH * of_t * motion)
@@ -135,7 +134,7 @@ class Walk:
         return step
 
     def snap(self, pairs: tuple[int, ...]) -> None:
-        """Set x_i of these pairs to the nearer of its two corners, against round-off."""
+        """Set x_i of these pairs to the nearer corner, against round-off."""
         at = list(pairs)
         corners = self.stairs.corner_x[:, at]
         self.u[0, at] = corners[np.abs(self.u[0, at] - corners).argmin(axis=0), np.arange(len(at))]

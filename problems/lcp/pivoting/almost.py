@@ -15,7 +15,7 @@ REBUILT_AFTER = 100
 """Pivots, besides the order, that cost as much as a new table."""
 
 PATH_LEFT = -1e-7
-"""A basic variable below this in an exact table, relative to the largest, means that rounding left the path."""
+"""A basic variable below this, relative to the largest, in an exact table shows that rounding left the path."""
 
 
 class Ended(Enum):

@@ -1,6 +1,6 @@
 """A dictionary: basic variables as affine functions of the others, with pivots and ratio tests.
 
-Ties break as if the first constants were raised by eps, eps^2, ..., so that no basis repeats.
+Ties break as if the first constants were raised by eps, eps^2, ..., so no basis repeats.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ class Dictionary:
         return least
 
     def _least(self, tied: Indices, scale: Array) -> int:
-        """The tied row that is least in eps, eps^2, ..., relative to a scale."""
+        """The tied row that is least, relative to a scale, in eps, eps^2, ..."""
         # The inverse basis holds the coefficients of eps^k; a row's own power has 1.
         places = self.places[self.rows]
         powers = (places >= 0).nonzero()[0]

@@ -16,7 +16,7 @@ from problems.lcp.pivoting.dictionary import TIE, Dictionary
 
 
 def unit_of(problem: LCP) -> float:
-    """The power of two next to A's largest entry, by which tables are divided."""
+    """The power of two next to A's largest entry, which divides tables."""
     most = largest_entries(problem)[1]
     return math.ldexp(1.0, min(math.frexp(most)[1], 1023)) if most > 0.0 else 1.0
 
@@ -96,7 +96,6 @@ class Game:
         n, m = self.problem.n, self.actions
         players = (0, m), (m, n)
         own, other = players[::-1] if label >= m else players
-        # One player's x gives the other's w.
         tables = tuple(self._dictionary(mine, theirs) for mine, theirs in ((own, other), (other, own)))
         path = AlmostComplementary(n, tables, label + n, frozenset({label, label + n}))
         for table in tables:

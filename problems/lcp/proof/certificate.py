@@ -107,7 +107,6 @@ class Certificate:
 
     @property
     def _room(self) -> Array:
-        """Distances from the nearer bounds."""
         x, problem = self.x, self.problem
         return x if problem.standard else np.minimum(x - problem.lower, problem.upper - x)
 
@@ -165,16 +164,10 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @_quiet
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite, immutable x.
-
-    Parameters
-    ----------
-    problem : MixedLCP
-    x : Array of shape (n,)
-    """
+    """The certificate of a finite, immutable x, shape (n,)."""
     terms = row_terms(problem, x)
     relative = terms.w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
-    # What shares in rows of a positive x are is asked only where w is off.
+    # The shares of x in rows matter only where w is off.
     off = np.abs(np.where(x == 0.0, np.minimum(relative, 0.0), relative))
     worst = largest(off)
     if not (problem.standard and worst <= ROUND_OFF and least(x) >= 0.0):
@@ -311,6 +304,5 @@ def _exact_point(problem: MixedLCP, rows: list[IntegerRow], state: State, x: Arr
 
 
 def _right_signs(problem: MixedLCP, state: State, x: tuple[Fraction, ...], w: tuple[Fraction, ...]) -> bool:
-    # Python compares fractions with floats exactly.
     rows = zip(x, w, state.tolist(), problem.lower.tolist(), problem.upper.tolist())
     return all(low <= v <= high and (low == high or s == BETWEEN or -s * r >= 0) for v, r, s, low, high in rows)

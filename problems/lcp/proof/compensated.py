@@ -78,7 +78,6 @@ def row_terms(problem: MixedLCP | Inequalities, x: Array) -> Terms:
 
 
 def _rows(problem: MixedLCP | Inequalities, x: Array) -> tuple[Array, Array]:
-    """A x + q and magnitude sums."""
     A, q = problem.A, problem.q
     if problem.sparse:
         total, lost, sizes = _sparse_sums(sp.csr_array(A), q, x)

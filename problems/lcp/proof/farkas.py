@@ -132,12 +132,7 @@ def farkas(problem: MixedLCP) -> Farkas | None:
 def infeasibility(problem: MixedLCP, guess: Array | None = None) -> Farkas | FloatFarkas | None:
     """A proof of infeasibility, exact or to working precision, or None.
 
-    Parameters
-    ----------
-    problem : MixedLCP
-        Up to order `LARGEST_VERTEX` rationals are tried.
-    guess : Array of shape (n,), optional
-        Replaces the linear program's.
+    Up to order `LARGEST_VERTEX` rationals are tried. `guess`, shape (n,): replaces the linear program's multiplier.
     """
     scaled = _Scaled.of(problem)
     if (scaled.system.q >= 0.0).all():

@@ -52,12 +52,7 @@ class Groups:
         return None if one is None or one.y is None or one.fixed.any() else _whole(one.y)
 
     def in_units(self, rows: NDArray[np.int64]) -> Groups:
-        """Undo a scaling of rows by 2^rows.
-
-        Parameters
-        ----------
-        rows : ndarray of int, shape (n,)
-        """
+        """Undo a scaling of rows by 2^rows, shape (n,)."""
 
         def moved(group: Group) -> Group:
             if group.y is None:
@@ -68,12 +63,7 @@ class Groups:
         return Groups(tuple(moved(group) for group in self.groups))
 
     def holds(self, problem: LCP) -> bool:
-        """Whether the groups prove that the problem has no solution.
-
-        Parameters
-        ----------
-        problem : LCP
-        """
+        """Whether the groups prove that the problem has no solution."""
         return self.complete and all(map(Excluding(problem).exactly, self.groups))
 
     @property

@@ -101,10 +101,11 @@ def in_doubt(A: Array, q: Array, states: States, bounds: tuple[Array, Array] | N
 
 
 def drift(B: Array, R: Array, x: Array, left: Array, size: Array, most: Any) -> tuple[Array, Array]:
-    """How far x > 0, one or a stack, is from y with B y = B x - left: |y - x| <= m x / (1 - d) if d = max off < 1.
+    """Bound y with B y = B x - left for x > 0, one or a stack: |y - x| <= m x / (1 - d) if d < 1; B is then
+    nonsingular.
 
-    Returns off = |I - R B| x / x and |R| left / x, whose maximum is m: then B is nonsingular. `size` bounds |B| x,
-    `most` bounds x.
+    Returns |I - R B| x / x, whose maximum is d, and |R| left / x, whose maximum is m. `size` bounds |B| x, `most`
+    bounds x.
     """
     n, sizes = x.shape[-1], np.abs(R)
     # Twice the rounding of the product (Higham, section 3.5), and what underflow loses.

@@ -21,20 +21,8 @@ def judged(
 ) -> tuple[NDArray[np.bool_], Array, Array, Array]:
     """Correct points of faces in twice the working precision.
 
-    Parameters
-    ----------
-    A : ndarray, shape (k, n, n)
-    q : ndarray, shape (k, n)
-    active : ndarray of bool, shape (k, n)
-    tolerance : float
-
-    Returns
-    -------
-    solves : ndarray of bool, shape (k,)
-        False decides nothing.
-    x : ndarray, shape (k, n)
-    residual, relative_residual : ndarray, shape (k,)
-        As in `Certificate`.
+    `A`, (k, n, n), `q`, (k, n), `active`, (k, n): problems and faces. Returns which points solve their problem (False
+    decides nothing), the points, (k, n), residuals and relative residuals, (k,), as in `Certificate`.
     """
     n = q.shape[1]
     block = np.where(active[:, :, None] & active[:, None, :], A, identity(n))

@@ -78,22 +78,9 @@ class ByProducts:
 class Bounds:
     """Bounds for slabs.
 
-    Attributes
-    ----------
-    slabs : Slabs
-    form : Quadratic
-    size_Y : ndarray
-        |Y_0| without its last column.
-    lost : ndarray
-        Rounding of G'.
-    image, room : ndarray, shape (slabs, N + 1, 7)
-        Coefficients of Y_0 H(p), and their radii.
-    misfit : ndarray
-        Bounds |Y(s) H(p(s))|.
-    off : ndarray
-        Bounds |I - Y(s) G'| but for the terms with x E.
-    E, through_E, turning : ndarray
-        |E|, its factor in these terms, and the bound of |Y_0 2 Q(p', .)|; None for slabs of no length.
+    `size_Y`: |Y_0| without its last column. `lost`: rounding of G'. `image`, `room`, (slabs, N + 1, 7): coefficients of
+    Y_0 H(p), and their radii. `misfit`: |Y(s) H(p(s))|. `off`: |I - Y(s) G'| but for the terms with x E. `E`,
+    `through_E`, `turning`: |E|, its factor in these terms, |Y_0 2 Q(p', .)|; None for slabs of no length.
     """
 
     slabs: Slabs

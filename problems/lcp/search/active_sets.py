@@ -1,6 +1,6 @@
 """Active sets: Newton's method on min(x, A x + q).
 
-For a symmetric A in a box descent with A + shift I follows; for a convex program, the augmented Lagrangian.
+Descent with A + shift I follows for a symmetric A in a box, the augmented Lagrangian for a convex program.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The first active sets of a small dense LCP, before a search is made.
 
 On a face x and w follow from one linear system; then an index belongs to the next face where x_i > w_i (Newton's method
-on min(x, w)). If nothing changes, the point is judged as everywhere. If no fewer indices change than at best three
-times, the sets may cycle, and the search takes over.
+on min(x, w)). If nothing changes, the point is judged. If no fewer indices change than at best three times, the sets
+may cycle, and the search takes over.
 """
 
 from __future__ import annotations

@@ -87,7 +87,6 @@ def unscaled(problem: MixedLCP, scaled: Scaled, tolerance: float, found: Solutio
     said = "" if scaled.common else "In scaled units."
     if found.paths:
         said = "Rows and columns were scaled by powers of two; the paths are in scaled units."
-    # `Solution.farkas` computes its vector on demand.
     exact, nearly, tried = found.farkas if found.exhaustion is None else None, found.float_farkas, found.exhaustion
     if exact is not None:
         exact = exact.in_units(problem, scaled.rows)

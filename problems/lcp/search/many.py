@@ -145,8 +145,8 @@ def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> 
 def block_pivots(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
     """Active sets of many problems, and for which problems they are right but for rounding.
 
-    All wrong indices change, or the last one alone if their number has not fallen four times; so P-matrices need
-    finitely many changes. 2 n + 10 are made.
+    All wrong indices change, or the last one alone if their number has not fallen four times, so that P-matrices need
+    finitely many changes; 2 n + 10 are made.
     """
     k, n = q.shape
     active, left, right = q < 0.0, np.arange(k), np.zeros(k, dtype=bool)

@@ -1,7 +1,6 @@
 """Paths of Wang's and of the KKT homotopy, then restarts from random starts.
 
-An end of Wang's path solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of x'w that is
-no solution.
+An end of Wang's path solves the problem. The KKT path ends for any matrix, perhaps at a stationary point of x'w only.
 """
 
 from __future__ import annotations

@@ -24,8 +24,7 @@ COVERINGS = 5
 """Covering vectors for a quadratic program: 5 with entries 10^U(-3, 0) suffice on 40 indefinite box QPs."""
 
 SHORT_PATHS = 8
-"""Labels per unit of work, tried up to n / 2 pivots: 6 to 14 % of the labels of games of order 1000 have such a path.
-"""
+"""Labels per unit of work, tried up to n / 2 pivots: 6 to 14 % of a game's (order 1000) have such a path."""
 
 GAME_WORK = 1_000_000_000
 """Most table entries that a game's path visits: covariant games of order 300 take up to 17,000 pivots, 0.6 s."""

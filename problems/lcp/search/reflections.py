@@ -1,8 +1,7 @@
 """Douglas and Rachford's iteration between two sets: the points with w = A x + q, and those with complementary pairs.
 
 The first set is affine; in the second each pair (x_i, w_i) has its own nearest point. Nothing guarantees convergence,
-but only solutions are fixed points. Random problems neither monotone nor P take 0.3 s (n = 300); restarts take 60
-(`examples/benchmarks/outside.py`).
+but only solutions are fixed points. Random problems neither monotone nor P take 0.3 s (n = 300), by restarts 60.
 
 References
 ----------

@@ -2,7 +2,7 @@
 
 A solution lies on one of 2^n complementary faces. Active sets move to the face that the last signs ask for, pivots to a
 neighbour, reflections through points of no face, paths through interior points; exclusion proves many faces empty at
-once. The first active sets of a small problem are tried before, by `at_once`.
+once.
 """
 
 from __future__ import annotations
