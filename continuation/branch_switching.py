@@ -22,7 +22,8 @@ from continuation.status import Kind
 from continuation.tolerance import Tolerance
 
 TRIALS = 32
-"""Trial steps, each half of the last: the size of an unknown that stands still along the path is not known."""
+"""Trial steps, each half of the last: on the other branch the size of an unknown that stands still here is not known.
+"""
 
 SAME_LINE = 1.0 - 1e-5
 """Cosine between both extrapolated rays of one branch."""

@@ -51,7 +51,6 @@ def begin(
             zero = np.abs(s) <= switch_noise(solver, pieces, point)
             if (zero | (s * signs > 0.0)).all():
                 break
-            # The correction has crossed a border.
             signs = pieces.signs(point.u)
         else:
             raise StartError("It is on one piece before it is corrected, and on another one afterwards.")

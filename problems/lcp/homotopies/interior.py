@@ -145,7 +145,13 @@ def proof_engine(self: Any) -> ByProducts:
 
 
 def certify_end(self: Any, y: Array) -> str:
-    """A sentence on the exact solution near the end y of a path, or ""."""
+    """A sentence on the exact solution near x, or "".
+
+    Parameters
+    ----------
+    y : ndarray
+        The end of a path.
+    """
     return exact_end(self.problem, y[: self.n])
 
 
