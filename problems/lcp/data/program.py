@@ -139,10 +139,11 @@ def from_qp(
     P = _matrix("P", P, n)
     expect(P.shape[0] == n, "P", f"shape {(n, n)}, one row a number of c", P.shape)
     expect(abs(P - P.T).sum() == 0.0, "P", "a symmetric matrix, such as (P + P') / 2", P)
-    if (G is None) != (h is None and rows_lower is None):
-        raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
-    if (A_eq is None) != (b_eq is None):
-        raise ValueError("A_eq: expected A_eq and b_eq, or neither")
+    expect(
+        (G is None) == (h is None and rows_lower is None),
+        "G", "rows and one side of them, h or rows_lower, or none of these", G,
+    )  # fmt: skip
+    expect((A_eq is None) == (b_eq is None), "A_eq", "A_eq and b_eq, or neither", A_eq)
     G = np.zeros((0, n)) if G is None else _matrix("G", G, n)
     B = np.zeros((0, n)) if A_eq is None else _matrix("A_eq", A_eq, n)
     b = np.zeros(0) if b_eq is None else finite_vector("b_eq", b_eq, B.shape[0])
