@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
-from attrs import Attribute
+from attrs.validators import optional
 
-from continuation.arguments.checks import FINITE, expect, integer, is_number
+from continuation.arguments.checks import FINITE, Validator, expect, integer, is_number
 from continuation.arrays import Array, Mask, Matrix
 from continuation.arrays import finite as finite_sum
 from continuation.budget import Budget
@@ -23,12 +23,8 @@ quiet = without_warnings(over="ignore", invalid="ignore")
 
 positive_integer = integer(1)
 finite = FINITE
-
-
-def finite_or_none(instance: Any, attribute: Attribute[Any], value: Any) -> None:
-    """Validate like `finite`; None means no target."""
-    if value is not None:
-        finite(instance, attribute, value)
+finite_or_none: Validator = optional(FINITE)
+"""None means no target."""
 
 
 def check_tolerance(value: Any) -> None:

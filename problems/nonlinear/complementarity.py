@@ -149,8 +149,6 @@ class InteriorHomotopy:
     @cached_property
     def own_metric(self) -> RelativeMetric:
         """The metric of relative changes."""
-        if self._shape.standard:
-            return RelativeMetric()
         return RelativeMetric(lower=self.problem.lower, upper=self.problem.upper)
 
     def start(self) -> tuple[Array, float]:

@@ -19,7 +19,7 @@ from continuation.archive.hdf5 import Allowance
 from continuation.arrays import Array, Matrix
 from problems.lcp.data.containers import ALONE, BOUNDS, PROGRAM, READERS
 from problems.lcp.data.problem import LCP, MixedLCP
-from problems.lcp.data.program import Program, from_qp
+from problems.lcp.data.program import Program, from_lp, from_qp
 from problems.options import finite_vector, real_array, sound_sparse
 
 MATRICES = ("A", "P", "G", "A_eq")
@@ -49,7 +49,8 @@ def read_problem(path: str | PathLike[str], q: str | PathLike[str] | None = None
         if q is None and ALONE in contents:
             raise ValueError(f"expected A and q, found one array in {fspath(path)!r}; give q in its own file")
         if q is None and "c" in contents and not {"A", "q"} & set(contents):
-            return from_qp(**{"P": None, **{name: _named(contents, name) for name in PROGRAM if name in contents}})
+            program = {name: _named(contents, name) for name in PROGRAM if name in contents}
+            return from_qp(**program) if "P" in program else from_lp(**program)
         A = _named(contents, "A")
         vector = _named(contents if q is None else _contents("q", q), "q")
         given = {name: _named(contents, name) for name in BOUNDS if name in contents}

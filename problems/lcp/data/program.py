@@ -115,8 +115,8 @@ def from_qp(
 
     Parameters
     ----------
-    P : array_like or scipy sparse, shape (n, n), or None
-        Symmetric; None for a linear program.
+    P : array_like or scipy sparse, shape (n, n)
+        Symmetric.
     c : array_like, shape (n,)
     G : array_like or scipy sparse, shape (m, n), optional
     h : array_like, shape (m,), or one number, optional
@@ -134,15 +134,14 @@ def from_qp(
     """
     c = finite_vector("c", c)
     n = c.size
-    if P is None:
-        P = (sp.csr_array if sp.issparse(G) or sp.issparse(A_eq) else np.zeros)((n, n))
     P = _matrix("P", P, n)
     expect(P.shape[0] == n, "P", f"shape {(n, n)}, one row a number of c", P.shape)
     expect(abs(P - P.T).sum() == 0.0, "P", "a symmetric matrix, such as (P + P') / 2", P)
-    if (G is None) != (h is None and rows_lower is None):
-        raise ValueError("G: expected rows and one side of them, h or rows_lower, or none of these")
-    if (A_eq is None) != (b_eq is None):
-        raise ValueError("A_eq: expected A_eq and b_eq, or neither")
+    expect(
+        (G is None) == (h is None and rows_lower is None),
+        "G", "rows and one side of them, h or rows_lower, or none of these", G,
+    )  # fmt: skip
+    expect((A_eq is None) == (b_eq is None), "A_eq", "A_eq and b_eq, or neither", A_eq)
     G = np.zeros((0, n)) if G is None else _matrix("G", G, n)
     B = np.zeros((0, n)) if A_eq is None else _matrix("A_eq", A_eq, n)
     b = np.zeros(0) if b_eq is None else finite_vector("b_eq", b_eq, B.shape[0])
@@ -183,7 +182,9 @@ def from_lp(
     c, G, h, A_eq, b_eq, lower, upper, rows_lower : array_like
         As for `from_qp`.
     """
-    return from_qp(None, c, G, h, A_eq, b_eq, lower, upper, rows_lower=rows_lower)
+    c = finite_vector("c", c)
+    P = (sp.csr_array if sp.issparse(G) or sp.issparse(A_eq) else np.zeros)((c.size, c.size))
+    return from_qp(P, c, G, h, A_eq, b_eq, lower, upper, rows_lower=rows_lower)
 
 
 def _matrix(name: str, value: Any, columns: int) -> Matrix:

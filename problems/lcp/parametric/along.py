@@ -26,7 +26,7 @@ from problems.lcp.parametric.start import from_ray, from_solution
 from problems.lcp.parametric.trail import Trail
 from problems.lcp.parametric.walk import OUTSIDE_LIMITS
 from problems.lcp.search.solver import solve
-from problems.options import check_budget, expect_nowhere, finite_vector
+from problems.options import check_budget, expect_nowhere, finite_vector, real_array
 
 CORNERS = 100_000
 """Default budget; Murty's example of order 16 has 65,535 kinks."""
@@ -154,7 +154,7 @@ def checked(problem: MixedLCP, d: Any, level: Any) -> tuple[MixedLCP, Array, Arr
     slope = finite_vector("d", d, problem.n)
     free = np.isneginf(problem.lower) & np.isposinf(problem.upper)
     if np.ndim(level) == 0:
-        level = np.where(free | ~free.any(), level, 0.0)
+        level = np.where(free | ~free.any(), real_array("level", level), 0.0)
     found = finite_vector("level", level, problem.n)
     wrong = (found < 0.0) | ((found > 0.0) & ~free)
     expected = "0 where there are bounds, and nowhere negative"
