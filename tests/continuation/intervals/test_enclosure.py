@@ -92,14 +92,9 @@ def test_the_slopes_of_an_expression_are_enclosed(name, x, width, part, v):
         columns = [[(p - q) / (2 * h) for p, q in zip(moved(e), moved([-s for s in e]))] for e in units]
         assert inside(slopes.c, [column[row] for row in range(len(here)) for column in columns], room)
         assert inside(along[2], [(p - 2 * q + r) / (2 * h * h) for p, q, r in zip(ahead, here, behind)], room)
-        corners = [[moved(a, b) for a, b in _signs(e, v)] for e in units]
+        corners = [[moved([j * s for s in e], [k * s for s in v]) for j in (1, -1) for k in (1, -1)] for e in units]
         mixed = [(p - q - r + s) / (4 * h * h) for column in corners for p, q, r, s in zip(*column)]
         assert inside(changed.c[1:], mixed, room)
-
-
-def _signs(e, v):
-    minus_e, minus_v = [-s for s in e], [-s for s in v]
-    return (e, v), (e, minus_v), (minus_e, v), (minus_e, minus_v)
 
 
 def test_where_boxes_do_not_decide_there_is_no_second_derivative():
