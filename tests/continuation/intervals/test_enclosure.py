@@ -49,10 +49,6 @@ def test_the_series_of_a_function_along_a_curve_is_enclosed(name, place, width, 
     assert told.all() or width > 0.01  # near an edge of the domain a box is outside of it
 
 
-def lists(y):
-    return np.stack([y[0], *y[1:]])
-
-
 EXPRESSIONS = {
     "quotients": lambda y: (y[1:] - 2.0) / (y[:-1] * y[1:] + 1.0) + 3.0 / y[1:] - y[1:] / 7.0,
     "whole powers": lambda y: y**3 - y**-2 + y ** np.array([0.0, 1.0, 4.0, -3.0]),
@@ -60,7 +56,7 @@ EXPRESSIONS = {
     "a trace of three": lambda y: np.einsum("ij,jk,ki->", np.outer(y, y), np.outer(y, y + 1.0), np.outer(y, y)) * y,
     "sums": lambda y: y * y + np.prod(y) - np.diff(y, 2)[1] + np.sum(y) / 3.0,
     "products": lambda y: np.outer(y, y) @ y + np.dot(y, y) * np.vdot(y, y),
-    "assembly": lambda y: np.where([True, False, True, False], lists(y), np.roll(y, 1)) * np.flip(y),
+    "assembly": lambda y: np.where([True, False, True, False], np.stack([y[0], *y[1:]]), np.roll(y, 1)) * np.flip(y),
     "larger": lambda y: np.maximum(y, y[::-1]) * np.minimum(y * y, 3.0 * y) + np.abs(y - 1.5),
     "square": lambda y: (y - y[0]) * (y - y[0]) + np.square(y - 1.0),
 }
