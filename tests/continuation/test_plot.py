@@ -49,12 +49,6 @@ def legend(axes):
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
-def straight(n):
-    """y_k = k lam, from lam = 1 to 0."""
-    slopes = np.arange(1.0, n + 1)
-    return from_functions(lambda y, lam: y - slopes * lam, start=(slopes, 1.0))
-
-
 def test_components_lie_on_the_path_between_the_points_too(path, axes):
     plot_components(path, axes, names=["first", "second"])
     first, second = lines(axes)
@@ -76,7 +70,9 @@ def test_components_lie_on_the_path_between_the_points_too(path, axes):
 
 @pytest.mark.parametrize(("asked", "drawn"), [({}, 7), ({"components": range(12)}, 12)])
 def test_colours_and_styles_both_tell_curves_apart_of_which_there_are_seven_unless_asked(axes, asked, drawn):
-    plot_components(trace(straight(15)), axes, **asked)
+    # y_k = k lam, from lam = 1 to 0.
+    slopes = np.arange(1.0, 16.0)
+    plot_components(trace(from_functions(lambda y, lam: y - slopes * lam, start=(slopes, 1.0))), axes, **asked)
     looks = [(line.get_color(), line.get_linestyle()) for line in lines(axes)]
     assert len(looks) == len(set(looks)) == drawn
     assert all(a[0] != b[0] and a[1] != b[1] for a, b in pairwise(looks))

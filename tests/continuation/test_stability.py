@@ -167,11 +167,7 @@ def test_a_path_is_drawn_solid_up_to_the_event_at_which_it_becomes_unstable(opti
     pyplot.close("all")
 
 
-class Counting(Diffusing):
-    def observe(self, y, lam):
-        return {"unstable": 1.0}
-
-
 def test_a_scalar_of_the_homotopy_with_the_same_name_is_refused():
+    counting = type("Counting", (Diffusing,), {"observe": lambda self, y, lam: {"unstable": 1.0}})()
     with pytest.raises(ValueError, match="observe: expected each name once, found 'unstable' of an event too"):
-        trace(Counting(), observers=[Stability()])
+        trace(counting, observers=[Stability()])

@@ -56,10 +56,6 @@ EITHER = (EVERY_KIND, evolve(EVERY_KIND, A=sp.csr_array(EVERY_KIND.A)))
 """Dense and sparse."""
 
 
-def linear(x):
-    return chain(x.size) @ x - 1.0
-
-
 def circle(y, lam):
     return y**2 + lam**2 - 1.0
 
@@ -82,7 +78,9 @@ MADE = {
     },
     # The matrix is one and the same each time: blending leaves it alone.
     **{
-        f"{make.__name__}, {name}, kept": partial(make, linear, START, lambda x, name=name: KEPT[name])
+        f"{make.__name__}, {name}, kept": partial(
+            make, lambda x: chain(x.size) @ x - 1.0, START, lambda x, name=name: KEPT[name]
+        )
         for make in (fixed_point, newton) for name in FORMS
     },
     "kkt, off the feasible set": partial(lcp.KKTHomotopy, LCP(chain(6).toarray(), Q), x0=START),

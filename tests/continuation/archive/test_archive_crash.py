@@ -3,6 +3,8 @@
 Kills at random moments are a campaign of `tests/reliability`.
 """
 
+from itertools import count
+
 import h5py
 import numpy as np
 import pytest
@@ -87,12 +89,11 @@ def test_a_torn_checkpoint_gives_way_to_the_one_before(tmp_path):
 
 def test_keyboard_interrupt_within_a_commit_repeats_it(tmp_path, monkeypatch):
     """Ctrl-C between the phases: the commit at the end of the path writes the same rows again, once."""
-    path, flush, calls = trace(FreudensteinRoth()), Store._flush, []
+    path, flush, calls = trace(FreudensteinRoth()), Store._flush, count(1)
 
     def interrupted(self):
         flush(self)
-        calls.append(1)
-        if len(calls) == 6:
+        if next(calls) == 6:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(Store, "_flush", interrupted)

@@ -9,6 +9,7 @@ from continuation.archive import open_archive, resume, trace_many
 from problems.bifurcation import Circle, FreudensteinRoth
 
 from ...util import refused
+from .test_archive_workers import Broken
 from .util import interrupted, logged, read
 
 
@@ -28,11 +29,6 @@ def of_a_newer_version(file):
     trace(Circle(), archive=file)
     with h5py.File(file, "a", libver="latest") as opened:
         opened.attrs.update({"schema": "continuation-path-3", "library_version": "3.1.4"})
-
-
-class Nowhere(Circle):
-    def start(self):
-        raise RuntimeError("no")
 
 
 FILES = {
@@ -56,7 +52,7 @@ FILES = {
         "has the newer schema continuation-path-3, this library reads up to continuation-path-2; .*3.1.4.*xarray",
     ),
     "no state": (
-        lambda file: trace_many([Nowhere()], archive=file).close(),
+        lambda file: trace_many([Broken()], archive=file).close(),
         "path 0 has no state to resume from; trace it again",
     ),
 }

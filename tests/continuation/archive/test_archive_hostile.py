@@ -51,10 +51,6 @@ def replaced(file, name, value):
     file[name] = value
 
 
-def names(file, text):
-    file.attrs["names"] = text
-
-
 def other(file, **layout):
     del file["parameter"]
     file.create_dataset("parameter", dtype="f8", **layout)
@@ -103,9 +99,9 @@ HARM = {
     "a column's name that is no text": lambda f, s: f.create_dataset(b"observed_\xff", data=np.zeros(14)),
     "a column's name with control codes": lambda f, s: f.create_dataset("observed_\x1b]0;x\x07", data=np.zeros(14)),
     "a type with control codes": lambda f, s: (f.pop("y"), f.create_dataset("y", (14,), [("\x1b[2J", "f8")])),
-    "nested roots": lambda f, s: names(f, json.dumps(["$" + "\\sqrt{" * 300 + "x" + "}" * 300 + "$"])),
+    "nested roots": lambda f, s: f.attrs.update(names=json.dumps(["$" + "\\sqrt{" * 300 + "x" + "}" * 300 + "$"])),
     "points that are claimed": lambda f, s: claimed(f, points=10**12),
-    "nested names": lambda f, s: names(f, "[" * 100_000),
+    "nested names": lambda f, s: f.attrs.update(names="[" * 100_000),
     "a homotopy's name with control codes": lambda f, s: f.attrs.__setitem__("homotopy", "\x1b]0;x\x07"),
 }
 

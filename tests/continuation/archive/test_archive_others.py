@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from continuation import Tracer, trace
-from continuation.archive import ArchiveError, ArchiveExistsError, open_archive, resume
+from continuation.archive import ArchiveError, open_archive, resume
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine
 
@@ -84,10 +84,3 @@ def test_a_log_writes_one_path_after_another(tmp_path, path):
             with pytest.raises(ArchiveError, match="a path is being written already"):
                 trace(HOMOTOPY, archive=tracer.observers[0], **OPTIONS)
     assert np.array_equal(read(file).u, path.u)
-
-
-def test_a_link_to_nothing_is_not_written_through(tmp_path):
-    (tmp_path / "link.h5").symlink_to("gone.h5")
-    with pytest.raises(ArchiveExistsError):
-        trace(HOMOTOPY, archive=tmp_path / "link.h5")
-    assert not (tmp_path / "gone.h5").exists()

@@ -104,13 +104,6 @@ def test_many_paths_in_one_file(tmp_path):
         assert archive[-1].status is Status.RAISED
 
 
-def test_a_trace_that_is_refused_leaves_no_file(tmp_path):
-    homotopy = from_functions(lambda y, lam: y, start=(np.array([np.nan]), 0.0))
-    with pytest.raises(ValueError, match="start: expected finite numbers"):
-        trace(homotopy, archive=tmp_path / "run.h5")
-    assert not list(tmp_path.iterdir())
-
-
 def test_provenance_and_the_problem_are_in_the_file(tmp_path):
     trace(FreudensteinRoth(), archive=tmp_path / "run.h5")
     with h5py.File(tmp_path / "run.h5") as file:

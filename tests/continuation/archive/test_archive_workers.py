@@ -9,6 +9,7 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import nullcontext
 from functools import partial
+from unittest.mock import Mock
 
 import attrs
 import numpy as np
@@ -17,6 +18,8 @@ import pytest
 from continuation import Status, trace
 from continuation.archive import describe, open_archive, trace_many
 from problems.bifurcation import Cusp
+
+from ...util import interrupt
 
 GOOD = [Cusp(splitting) for splitting in np.linspace(0.5, 2.0, 5)]
 POOLS = {
@@ -81,11 +84,10 @@ def expected():
     return [trace(homotopy) for homotopy in GOOD]
 
 
-def no_link(*_):
-    raise PermissionError(1, "no links here")
-
-
-@pytest.mark.parametrize(("archived", "link"), [(False, os.link), (True, os.link), (True, no_link)])
+@pytest.mark.parametrize(
+    ("archived", "link"),
+    [(False, os.link), (True, os.link), (True, Mock(side_effect=PermissionError(1, "no links here")))],
+)
 @pytest.mark.parametrize("pool", POOLS)
 def test_order_is_that_of_the_homotopies(tmp_path, monkeypatch, expected, pool, archived, link):
     monkeypatch.setattr(os, "link", link)
@@ -106,9 +108,8 @@ def test_order_is_that_of_the_homotopies(tmp_path, monkeypatch, expected, pool, 
 
 def patient(futures, timeout=None, return_when=concurrent.futures.ALL_COMPLETED):
     """`wait`, whose time is up when no other path is on its way: no clock decides which one hangs."""
-    if timeout is None or len(futures) > 1:
-        return concurrent.futures.wait(futures, return_when=return_when)
-    return concurrent.futures.wait(futures, timeout=0.0, return_when=return_when)
+    alone = timeout is not None and len(futures) == 1
+    return concurrent.futures.wait(futures, timeout=0.0 if alone else None, return_when=return_when)
 
 
 ANYWHERE = {
@@ -180,15 +181,6 @@ def test_what_cannot_be_swept_is_refused_and_nothing_may_be_swept(tmp_path):
     assert not os.listdir(tmp_path)
 
 
-@pytest.fixture
-def own_handler():
-    """Python's own, since a shell starts what runs in its background with the signal ignored."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
-    yield
-    signal.signal(signal.SIGINT, before)
-
-
-@pytest.mark.usefixtures("own_handler")
 @pytest.mark.parametrize(
     ("pool", "tasks", "after", "kept"),
     [
@@ -202,8 +194,7 @@ def test_ctrl_c_keeps_what_is_finished(tmp_path, expected, pool, tasks, after, k
 
     def stop(done, total):
         if done >= after:
-            # To this thread: a signal to the process may reach another one first, and be noticed when all is done.
-            signal.raise_signal(signal.SIGINT)
+            interrupt()
 
     begin = time.monotonic()
     with POOLS[pool]() as executor, pytest.raises(KeyboardInterrupt):

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from continuation import Budget, trace
+from continuation import Budget, from_functions, trace
 from continuation.archive import Limits, PathLog, describe, export, merge, open_archive, recover, resume
 from continuation.events import Monitor, TargetValue
 from problems.bifurcation import Cusp, ExponentialCosine
@@ -26,6 +26,7 @@ def folder(tmp_path_factory):
     (place / "empty.h5").touch()
     (place / "folder.h5").mkdir()
     os.mkfifo(place / "pipe.h5")
+    (place / "link.h5").symlink_to("gone.h5")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(place)
         yield place
@@ -33,7 +34,7 @@ def folder(tmp_path_factory):
 
 NO_NAMES = (None, 5, 1.5, b"good.h5", ["good.h5"])
 NO_FILES = ("gone.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5", "", "a" * 300, "no/where.h5")
-NO_PLACES = ("good.h5", "folder.h5", "no/where.h5", "a" * 300, "pipe.h5")
+NO_PLACES = ("good.h5", "folder.h5", "no/where.h5", "a" * 300, "pipe.h5", "link.h5")
 READERS = {
     "open_archive": open_archive,
     "recover": recover,
@@ -87,6 +88,7 @@ REFUSED = {
     "events": ("events", lambda: resume("half.h5", budget=Budget(), events=5)),
     "events, two too many": ("events", lambda: resume("half.h5", budget=Budget(), events=[TargetValue(0.3)] * 2)),
     "observers": ("observers", lambda: resume("half.h5", budget=Budget(), observers=5)),
+    "a start of NaN": ("start", lambda: trace(from_functions(np.add, start=([NAN], 0.0)), archive="w.h5")),
     "start": ("start", lambda: resume("half.h5", budget=Budget(), start=(np.zeros(2), np.ones(2)))),
     "state": ("state", lambda: resume("half.h5", budget=Budget(), state=None)),
     "trust": ("trust", lambda: resume("half.h5", budget=Budget(), trust=[5])),
@@ -111,6 +113,6 @@ def test_one_line(folder, argument, call):
 
 
 def test_what_was_refused_has_left_nothing(folder):
-    kept = {"good.h5", "half.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5"}
+    kept = {"good.h5", "half.h5", "junk.h5", "empty.h5", "folder.h5", "pipe.h5", "link.h5"}
     assert set(os.listdir(folder)) == kept
     assert len(open_archive("good.h5").path(0)) == len(trace(CUSP))

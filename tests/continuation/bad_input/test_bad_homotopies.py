@@ -1,5 +1,7 @@
 """Homotopies whose methods return what they should not: refused at the start, in one line that names the method."""
 
+from itertools import count
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -108,15 +110,9 @@ def test_what_is_no_homotopy_or_answers_what_it_should_not(argument, homotopy, o
     refused(argument, lambda: trace(homotopy, **options))
 
 
-class Renaming(Line):
-    seen = 0
-
-    def observe(self, y, lam):
-        self.seen += 1
-        return {f"k{self.seen}": 1.0}
-
-
 def test_observed_names_stay_what_they_are(tmp_path):
+    numbers = count()
+    renaming = with_methods(observe=lambda *_: {f"k{next(numbers)}": 1.0})
     for archive in (None, tmp_path / "run.h5"):
-        with pytest.raises(ValueError, match=r"observe: expected the names of the first point, .*k1.*, found .*k2"):
-            trace(Renaming(), archive=archive)
+        with pytest.raises(ValueError, match=r"observe: expected the names of the first point, .*k\d+.*, found .*k\d+"):
+            trace(renaming, archive=archive)

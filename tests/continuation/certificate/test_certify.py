@@ -77,18 +77,14 @@ def test_the_true_path_lies_in_the_tube():
     assert not certify(evolve(path, events=sorted([*path.events, *events], key=lambda e: e.arclength)), homotopy).gaps
 
 
-def scaled(homotopy, seed):
-    """The same homotopy in other units of y, of the parameter and of the equations."""
-    rng, n = np.random.default_rng(seed), homotopy.start()[0].size
-    D, E = 2.0 ** rng.integers(-20, 20, (2, n))
-    return Rescaled(homotopy, D, np.zeros(n), E, 2.0 ** float(rng.integers(-20, 20)), 0.0)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_units_do_not_matter(seed):
+    """The same homotopy in other units of y, of the parameter and of the equations."""
+    rng = np.random.default_rng(seed)
     for inner in (FreudensteinRoth(), ExponentialCosine(3)):
-        homotopy = scaled(inner, seed)
-        _, proof = proved(homotopy)
+        n = inner.start()[0].size
+        D, E = 2.0 ** rng.integers(-20, 20, (2, n))
+        _, proof = proved(Rescaled(inner, D, np.zeros(n), E, 2.0 ** float(rng.integers(-20, 20)), 0.0))
         assert len(proof.turning_points) == len(trace(inner).turning_points)
 
 

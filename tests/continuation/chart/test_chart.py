@@ -1,5 +1,7 @@
 """Studies on paths in closed form: what is counted, what counts as a failure, what is kept and drawn."""
 
+from unittest.mock import Mock
+
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -85,8 +87,6 @@ def test_what_is_not_there_is_not_drawn(results, picture, complaint):
 
 
 def test_without_matplotlib_there_are_no_figures(study, results, tmp_path, monkeypatch):
-    def missing(*_, **__):
-        raise ImportError("none here")
-
+    missing = Mock(side_effect=ImportError("none here"))
     monkeypatch.setattr("continuation.chart.panels.require_matplotlib", missing)
     assert [file.suffix for file in report(study, results, tmp_path)] == [".json"]

@@ -130,12 +130,9 @@ def test_export_and_merge(run, archive, tmp_path):
 # -- the program itself ---------------------------------------------------------------------------------------
 
 
-def points(*pairs):
-    return lambda group: [EntryPoint(name, value, group) for name, value in pairs]
-
-
 def test_a_command_that_cannot_be_loaded_hides_no_other(run, archive, monkeypatch):
-    monkeypatch.setattr(plugins, "entry_points", points(("broken", "no.such.module:register")))
+    point = "broken", "no.such.module:register"
+    monkeypatch.setattr(plugins, "entry_points", lambda group: [EntryPoint(*point, group)])
     run("inspect", archive)
     err = run("broken", "--anything", "file", status=BAD_INPUT).err
     assert "broken: no.such.module:register (no.such.module:register) cannot be loaded: ModuleNotFoundError" in err

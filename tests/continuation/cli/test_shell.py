@@ -2,6 +2,7 @@
 
 import io
 import json
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -41,10 +42,8 @@ def test_what_is_wrong_with_a_plug_in_is_one_line(run, own, name, line):
 
 
 def test_a_picture_that_cannot_be_written_is_told_before_the_work(run, tmp_path, monkeypatch):
-    def refused(*arguments, **options):
-        raise PermissionError(13, "Permission denied")
-
-    monkeypatch.setattr("continuation.cli.figures.TemporaryFile", refused)
+    denied = Mock(side_effect=PermissionError(13, "Permission denied"))
+    monkeypatch.setattr("continuation.cli.figures.TemporaryFile", denied)
     err = run("trace", "circle", "--plot", tmp_path / "p.png", status=BAD_INPUT).err
     assert "--plot: expected a place to write to" in err
 

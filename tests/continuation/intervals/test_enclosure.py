@@ -49,10 +49,6 @@ def test_the_series_of_a_function_along_a_curve_is_enclosed(name, place, width, 
     assert told.all() or width > 0.01  # near an edge of the domain a box is outside of it
 
 
-def lists(y):
-    return np.stack([y[0], *y[1:]])
-
-
 EXPRESSIONS = {
     "quotients": lambda y: (y[1:] - 2.0) / (y[:-1] * y[1:] + 1.0) + 3.0 / y[1:] - y[1:] / 7.0,
     "whole powers": lambda y: y**3 - y**-2 + y ** np.array([0.0, 1.0, 4.0, -3.0]),
@@ -60,7 +56,7 @@ EXPRESSIONS = {
     "a trace of three": lambda y: np.einsum("ij,jk,ki->", np.outer(y, y), np.outer(y, y + 1.0), np.outer(y, y)) * y,
     "sums": lambda y: y * y + np.prod(y) - np.diff(y, 2)[1] + np.sum(y) / 3.0,
     "products": lambda y: np.outer(y, y) @ y + np.dot(y, y) * np.vdot(y, y),
-    "assembly": lambda y: np.where([True, False, True, False], lists(y), np.roll(y, 1)) * np.flip(y),
+    "assembly": lambda y: np.where([True, False, True, False], np.stack([y[0], *y[1:]]), np.roll(y, 1)) * np.flip(y),
     "larger": lambda y: np.maximum(y, y[::-1]) * np.minimum(y * y, 3.0 * y) + np.abs(y - 1.5),
     "square": lambda y: (y - y[0]) * (y - y[0]) + np.square(y - 1.0),
 }
@@ -92,14 +88,9 @@ def test_the_slopes_of_an_expression_are_enclosed(name, x, width, part, v):
         columns = [[(p - q) / (2 * h) for p, q in zip(moved(e), moved([-s for s in e]))] for e in units]
         assert inside(slopes.c, [column[row] for row in range(len(here)) for column in columns], room)
         assert inside(along[2], [(p - 2 * q + r) / (2 * h * h) for p, q, r in zip(ahead, here, behind)], room)
-        corners = [[moved(a, b) for a, b in _signs(e, v)] for e in units]
+        corners = [[moved([j * s for s in e], [k * s for s in v]) for j in (1, -1) for k in (1, -1)] for e in units]
         mixed = [(p - q - r + s) / (4 * h * h) for column in corners for p, q, r, s in zip(*column)]
         assert inside(changed.c[1:], mixed, room)
-
-
-def _signs(e, v):
-    minus_e, minus_v = [-s for s in e], [-s for s in v]
-    return (e, v), (e, minus_v), (minus_e, v), (minus_e, minus_v)
 
 
 def test_where_boxes_do_not_decide_there_is_no_second_derivative():
