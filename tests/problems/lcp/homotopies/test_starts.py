@@ -41,6 +41,9 @@ def test_default_start_has_the_units_of_the_problem():
     start, scaled = lcp.default_start(lcp.LCP(A, q)), lcp.default_start(lcp.LCP(1e6 * A, 1e2 * q))
     assert np.allclose(scaled.x0, 1e-4 * start.x0)
     assert np.allclose(scaled.w0, 1e2 * start.w0)
+    # Without q the solutions are those of any multiple of A.
+    start, scaled = lcp.default_start(lcp.LCP(A, 0.0 * q)), lcp.default_start(lcp.LCP(2.0**20 * A, 0.0 * q))
+    np.testing.assert_array_equal(scaled.x0, start.x0)
     assert lcp.default_start(lcp.LCP(np.zeros((2, 2)), [0.0, 0.0])).x0 == pytest.approx([1.0, 1.0])
 
 
