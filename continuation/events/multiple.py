@@ -159,7 +159,7 @@ class Polynomials:
             g, slopes = self.reduced.at(self.radius * a)[1], self.at(a[None])[1][0]
             step, rows = _onto_sphere(g, slopes, a, length)
             a = a + step
-            if not np.isfinite(a).all() or np.linalg.norm(a) > 4.0 * length:
+            if not np.linalg.norm(a) <= 4.0 * length:
                 return None
             if np.abs(step).max() <= ROOT_OF_ROUND_OFF * length:
                 return a, bool(np.linalg.svd(rows, compute_uv=False)[-1] >= ROOT_OF_ROUND_OFF)

@@ -3,7 +3,18 @@
 import numpy as np
 import pytest
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Kind, Status, branch_directions, from_functions, trace
+from continuation import (
+    CONSERVATIVE,
+    DEFAULT,
+    FAST,
+    SERIES,
+    Kind,
+    Status,
+    branch_directions,
+    from_functions,
+    switch_branch,
+    trace,
+)
 
 from ...util import every_preset
 
@@ -66,3 +77,10 @@ def test_the_directions_of_all_lines_are_found(name):
     _, *others = branch_directions(homotopy, path.events[0])
     found = sorted(float(v[0] / v[1]) for v in others)
     assert found == pytest.approx(sorted(CASES[name][2]), abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["three lines", "four lines", "three sloped lines"])
+def test_every_line_is_left_both_ways(name):
+    homotopy, path = path_of(name, DEFAULT)
+    slopes = sorted(float(v[0] / v[1]) for _, v in switch_branch(homotopy, path.events[0]))
+    assert slopes == pytest.approx(sorted(2 * CASES[name][2]), abs=1e-6)

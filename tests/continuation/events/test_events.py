@@ -65,9 +65,8 @@ def monitor(*places):
     ],
     ids=[
         "several in order", "three zeros of one", "a pair", "a narrow pair", "a pair near the end", "the target",
-        "behind a terminal one", "knots", "behind a knot", "a pair before a knot", "rising in a knot",
-        "falling in a knot",
-        "hidden", "hidden, rising", "hidden, falling",
+        "behind a terminal one", "knots", "behind a knot", "a pair before a knot",
+        "rising in a knot", "falling in a knot", "hidden", "hidden, rising", "hidden, falling",
         "rising only", "falling only",
     ],
 )  # fmt: skip

@@ -1,6 +1,7 @@
 """What cannot go well ends with the status that says why, and without a warning."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,12 @@ from ..util import scalar
 DEPENDENT = from_functions(
     lambda y, lam: np.array([y[0] + y[1] - lam, 2.0 * (y[0] + y[1] - lam)]), start=([0.0, 0.0], 0.0), target=1.0
 )
+# Its own factorisation solves nothing.
+ZEROS = SimpleNamespace(
+    start=lambda: (np.zeros(1), 0.0),
+    residual=lambda y, lam: y - lam,
+    bordered=lambda y, lam, border: SimpleNamespace(solve=lambda r, rho: np.zeros(2), sign=1),
+)
 FAR, SINGULAR = Status.START_NOT_ON_PATH, Status.SINGULAR_START
 
 
@@ -26,10 +33,19 @@ FAR, SINGULAR = Status.START_NOT_ON_PATH, Status.SINGULAR_START
         (scalar(lambda y, lam: y * y + lam * lam, lambda y, lam: (2.0 * y, 2.0 * lam)), SINGULAR, "start"),
         (scalar(lambda y, lam: 0.0 * y, lambda y, lam: (0.0, 0.0)), SINGULAR, "start"),
         (DEPENDENT, SINGULAR, "start"),
+        (ZEROS, SINGULAR, "the tangent vanishes"),
         (scalar(lambda y, lam: y * y + 1.0, lambda y, lam: (2.0 * y, 0.0), start=(1.0, 0.0)), FAR, "corrector says"),
         (scalar(lambda y, lam: y * np.nan, lambda y, lam: (1.0, 0.0)), FAR, "not finite"),
     ],
-    ids=["crossing", "isolated", "nothing", "dependent rows", "far from any path", "without a value"],
+    ids=[
+        "crossing",
+        "isolated",
+        "nothing",
+        "dependent rows",
+        "solves give zero",
+        "far from any path",
+        "without a value",
+    ],
 )
 def test_a_start_from_which_no_path_leaves(homotopy, status, words):
     path = trace(homotopy)
