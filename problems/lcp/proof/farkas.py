@@ -181,8 +181,8 @@ def scaled_data(problem: MixedLCP | Inequalities, rows: Array, columns: Array) -
 
 
 def _power_of_two(values: Array) -> Array:
-    exponents = np.clip(np.frexp(values)[1], -500, 500)
-    return np.where(values > 0.0, np.ldexp(1.0, exponents), 1.0)
+    # Of zero it is 1.
+    return np.asarray(np.ldexp(1.0, np.clip(np.frexp(values)[1], -500, 500)))
 
 
 @frozen(eq=False)
