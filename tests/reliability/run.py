@@ -8,15 +8,17 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
 import subprocess
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
-from multiprocessing import get_context
 from pathlib import Path
+
+from attrs import asdict
 
 from .campaigns import Found
 from .points import POINTS, Point
@@ -33,12 +35,19 @@ def tested(name: str) -> Found:
 
 
 def tried(index: int, k: int, size: int) -> Found:
-    """The k-th campaign of a point."""
+    """The k-th campaign of a point, in this process."""
     campaign = POINTS[index].campaigns[k]
     if campaign.needs and find_spec(campaign.needs) is None:
         return Found(0, 0, f"not run: {campaign.needs} is not installed")
     with tempfile.TemporaryDirectory() as folder:
         return campaign.run(Path(folder), size)
+
+
+def separately(job: tuple[int, int, int]) -> Found:
+    """The same in a process of its own: campaigns fork, limit themselves, and replace functions."""
+    command = [sys.executable, "-m", "tests.reliability.run", "--job", *map(str, job)]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
+    return Found(**json.loads(done.stdout)) if done.returncode == 0 else Found(0, 1, f"status {done.returncode}")
 
 
 def table(points: Sequence[Point], found: Mapping[object, Found]) -> tuple[str, int]:
@@ -58,7 +67,11 @@ def main() -> int:
     parser.add_argument("points", nargs="*", metavar="NUMBER", help="as 2, 17 or H1; all by default")
     parser.add_argument("--output", type=Path, default=ROOT / "build" / "reliability")
     parser.add_argument("--share", type=float, default=1.0, help="of the full sizes")
+    parser.add_argument("--job", nargs=3, type=int, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    if arguments.job:
+        print(json.dumps(asdict(tried(*arguments.job))))
+        return 0
     chosen = [(i, point) for i, point in enumerate(POINTS) if not arguments.points or point.number in arguments.points]
     # Each once: the same campaign, or file, may serve two points.
     campaigns = {
@@ -67,9 +80,8 @@ def main() -> int:
         for k, one in enumerate(point.campaigns)
     }
     tests = dict.fromkeys(test for _, point in chosen for test in point.tests)
-    # Each in a process of its own: campaigns fork, limit themselves, and replace functions.
-    with ProcessPoolExecutor(2, mp_context=get_context("spawn"), max_tasks_per_child=1) as executor:
-        found: dict[object, Found] = dict(zip(campaigns, executor.map(tried, *zip(*campaigns.values()))))
+    with ThreadPoolExecutor(2) as executor:
+        found: dict[object, Found] = dict(zip(campaigns, executor.map(separately, campaigns.values())))
         found |= zip(tests, executor.map(tested, tests))
     text, wrong = table([point for _, point in chosen], found)
     arguments.output.mkdir(parents=True, exist_ok=True)
