@@ -42,8 +42,8 @@ def test_default_start_has_the_units_of_the_problem():
     assert np.allclose(scaled.x0, 1e-4 * start.x0)
     assert np.allclose(scaled.w0, 1e2 * start.w0)
     # Without q the solutions are those of any multiple of A.
-    start, scaled = lcp.default_start(lcp.LCP(A, 0.0 * q)), lcp.default_start(lcp.LCP(2.0**20 * A, 0.0 * q))
-    np.testing.assert_array_equal(scaled.x0, start.x0)
+    start, scaled = (lcp.default_start(lcp.LCP(factor * A, 0.0 * q)).x0 for factor in (1.0, 2.0**20))
+    np.testing.assert_array_equal(scaled, start)
     assert lcp.default_start(lcp.LCP(np.zeros((2, 2)), [0.0, 0.0])).x0 == pytest.approx([1.0, 1.0])
 
 
@@ -116,6 +116,5 @@ def test_a_random_start_between_bounds_has_a_w_for_each_and_equal_products():
     products = start.z1 * [x1, x2 + 1.0, -x0, 1.0 - x2]
     np.testing.assert_allclose(products, products[0], rtol=1e-12)
     # Likewise of z2; in the box it is between 0 and 2, the multiplier of t what is left of that.
-    s1, s2, t0, t2 = start.w0
-    z0, z1, z2 = start.z2
+    (s1, s2, t0, t2), (z0, z1, z2) = start.w0, start.z2
     np.testing.assert_allclose([z1 * s1, -z0 * t0, z2 * s2], [products[0], products[0], (2.0 - z2) * t2], rtol=1e-12)

@@ -61,6 +61,8 @@ def test_the_kkt_equations_of_a_box_by_hand():
         2 * 7.5 - 0.25 * 1 * 7, (3 - 2) * 5 - 0.25 * 2 * 8,
     ]  # fmt: skip
     np.testing.assert_allclose(homotopy.residual(np.array([3.0, 1.0, 2.0, 2.0, 5.0]), 0.25), expected, rtol=1e-15)
+    # w = -1/2 at x = 5/4 presses against the upper bound.
+    assert homotopy.observe(np.array([1.25, 1.0, 2.0, 2.0, 5.0]), 0.25)["gap"] == (1.25 - 4.0) * -0.5
 
 
 @pytest.mark.parametrize("seed", range(3))

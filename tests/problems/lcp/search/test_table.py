@@ -88,12 +88,6 @@ def test_a_proof_is_looked_for_once_and_holds_for_the_data_as_given(problem, opt
     assert len(calls) == expected
 
 
-def test_a_row_does_no_more_than_its_work():
-    one = search(lcp.LCP([[0.0, 1.0], [0.0, 0.0]], [-1.0, 1.0]), restarts=5)
-    settled_by(one, (PATHS[0], evolve(PATHS[-1], work=2)))
-    assert (one.tried, len(one.paths)) == (2, 4)
-
-
 def test_a_sparse_matrix_is_dense_for_paths():
     r = np.random.default_rng(2)
     A = sp.random_array((20, 20), density=0.2, rng=r, data_sampler=r.standard_normal).tocsr()
