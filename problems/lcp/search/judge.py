@@ -181,7 +181,7 @@ def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> S
 
 
 def _not_found(found: Solution, why: str, certificate: Certificate | None) -> Solution:
-    message = f"{Outcome.NOT_FOUND} {why} {found.message}"
+    message = f"{Outcome.NOT_FOUND} {why} Before x was rounded: {found.message}"
     return evolve(found, outcome=Outcome.NOT_FOUND, certificate=certificate, message=message, farkas=None)
 
 
