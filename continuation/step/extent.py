@@ -147,8 +147,8 @@ def initial_extent(
         h = min(h, whole)
         if high < AROUND * low:
             break
-    if straight and found > length:
-        # Only the start's size is left as a scale; H may overflow before any length bends the path.
+    if straight and SEARCH_START * found > length:
+        # No length bends the path before H overflows, far away: only the start's size is left as a scale.
         found, off = length, (length / found) ** 2 * off
     if found > room:
         found, off = room, (room / found) ** 2 * off

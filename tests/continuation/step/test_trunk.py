@@ -148,9 +148,9 @@ def test_a_fine_mesh_loses_no_rank_by_its_condition():
     assert path.events[0].lam == pytest.approx(1.0, rel=1e-7)  # round-off of K is 1e-9
 
 
-@pytest.mark.parametrize("power", [2, 8, 12, 40])
+@pytest.mark.parametrize("power", [2, 12, 40, 80])
 def test_a_straight_trunk_has_the_scale_of_its_start(power):
-    """Lengths are tried until H bends; where lam^40 overflows is no length of the path."""
+    """Lengths are tried until H bends; where lam^80 overflows is no length of the path."""
     trunk = scalar(lambda y, lam: y * (lam**power - 2.0) - y**3, start=(0.0, 0.3), target=None)
     path = continuation.trace(trunk, budget=continuation.Budget(steps=15))
     assert [event.lam for event in path.events] == pytest.approx([2.0 ** (1.0 / power)])
