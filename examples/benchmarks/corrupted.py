@@ -186,9 +186,8 @@ def straight_on(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generato
     start = (path.steps[k - 1].u, path.steps[k - 1].tangent)
     steps = int(rng.integers(2, 7))
     beyond = trace(homotopy.piece(signs), start=start, target=None, budget=Budget(steps=steps + 1))
-    if len(beyond) < 3:
-        return None
-    kept = [*path.steps[: k + 1], *(s for s in beyond.steps if s.arclength > 1.2 * beyond.steps[1].arclength)]
+    least = 1.2 * beyond.arclength[:2].max()
+    kept = [*path.steps[: k + 1], *(s for s in beyond.steps if s.arclength > least)]
     if len(kept) < k + 2:
         return None
     known = [e for e in path.events if e.step < k or (e.step == k and rng.random() < 0.5)]

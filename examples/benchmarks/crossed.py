@@ -88,7 +88,7 @@ def _dressed(
         return float(np.abs(unmix[0]) @ size[:-1] + size[-1] + products)
 
     # The kernels of OpenBLAS give up to 420 of these units: a product of n terms is rounded n times.
-    worst = 1000.0 * float(np.finfo(float).eps) * max((rounding(*at) for at in crossings)) / angle
+    worst = 1000.0 * float(np.finfo(float).eps) * max(rounding(*at) for at in crossings) / angle
     homotopy = from_functions(residual, start=point(*curve(begin)), target=point(*curve(end))[1])
     return Crossed(homotopy, original, curve, crossings, worst)
 

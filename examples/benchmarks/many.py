@@ -16,18 +16,16 @@ import claims
 import numpy as np
 from campaign import WRONG, Campaign, Cases, Verdict, asked, timed
 
-from continuation.arrays import Array
 from problems import lcp
 from problems.lcp import LCP, Outcome
 
-Stack = tuple[Array, Array]
-Kind = Callable[[int, int, np.random.Generator], Stack]
+Kind = Callable[[int, int, np.random.Generator], claims.Data]
 
 
 def stacked(kind: Callable[[int, np.random.Generator], claims.Data], units: float = 0.0) -> Kind:
     """So many problems of a kind of `claims.py`, with rows and columns in units of 10^-units to 10^units."""
 
-    def draw(k: int, n: int, r: np.random.Generator) -> Stack:
+    def draw(k: int, n: int, r: np.random.Generator) -> claims.Data:
         A, q = (np.array(part) for part in zip(*(kind(n, r) for _ in range(k))))
         rows, columns = 10.0 ** r.uniform(-units, units, (2, k, n))
         return rows[:, :, None] * A * columns[:, None, :], rows * q
