@@ -101,11 +101,6 @@ def elsewhere(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator)
     return changed(path, event, evolve(event, u=event.u + off))
 
 
-def listed(step: Any) -> LocatedEvent:
-    """A point of the path as an event."""
-    return LocatedEvent("on the path", Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index)
-
-
 def left_out(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """Points left out on one and the same curve: no fault, but the tubes are then to hold them."""
     kinks = {e.step for e in path.kinks}
@@ -225,7 +220,11 @@ def judge(case: tuple[Any, Path, Any, Path], way: Any) -> Verdict:
         return f"{fault.__name__} refused", np.nan
     if fault is left_out:
         kept = {s.u.tobytes() for s in corrupted.steps}
-        gone = [listed(s) for s in path.steps if s.u.tobytes() not in kept]
+        gone = [
+            LocatedEvent("on the path", Kind.EVENT, s.arclength, s.u, s.tangent, 0.0, 0.0, 1, s.index)
+            for s in path.steps
+            if s.u.tobytes() not in kept
+        ]
         holding = numbered(path, [s for s in path.steps if s.u.tobytes() in kept], [*path.events, *gone])
         # Rational proofs are of the lines themselves, and take no event that is no kink.
         if isinstance(homotopy, Linear) or proved(homotopy, holding):

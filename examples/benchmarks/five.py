@@ -24,8 +24,6 @@ def brusselator(n):
     h2 = (1.0 / (n + 1)) ** 2
     L = sp.csc_array(sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n)) / h2)
     start, target = (np.repeat([A, 4.0 / A], n), 4.0), 6.2
-    at_ends = np.zeros(n)
-    at_ends[[0, -1]] = 1.0 / h2
 
     def residual(np, y, lam):
         x, z = y[:n], y[n:]
@@ -41,7 +39,7 @@ def brusselator(n):
         parts = [[2.0 * x * z - lam - 1.0, x * x], [lam - 2.0 * x * z, -x * x]]
         blocks = [[sp.diags_array(part) for part in row] for row in parts]
         blocks[0][0], blocks[1][1] = blocks[0][0] + DX * L, blocks[1][1] + DY * L
-        return sp.csc_array(sp.block_array(blocks)), np.concatenate((-x, x + DY / A * at_ends))
+        return sp.csc_array(sp.block_array(blocks)), np.concatenate((-x, x + DY / A * (-L @ np.ones(n))))
 
     return residual, jacobian, start, target
 

@@ -44,8 +44,8 @@ def together(n: int, k: int) -> str:
     """Microseconds each, certified, beside a loop over quantecon's Lemke, which certifies nothing."""
     A, q = KINDS["p_matrices"](k, n, np.random.default_rng(n))
     found, ours = timed(lambda: lcp.solve_many(A, q))
-    line = f"n = {n}, {k} problems: {1e6 * ours / k:.1f} us each, {found.solved.sum()} certified, "
-    line += f"{found.singly.size} one by one, relative residual {found.relative_residual.max():.0e}"
+    line = f"n = {n}, {k} problems: {1e6 * ours / k:.1f} us each, {found.solved.sum()} certified, " \
+           f"{found.singly.size} one by one, relative residual {found.relative_residual.max():.0e}"  # fmt: skip
     if find_spec("quantecon"):
         lemke = import_module("quantecon.optimize").lcp_lemke
         lemke(A[0], q[0])
