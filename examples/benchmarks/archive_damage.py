@@ -10,6 +10,7 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -43,13 +44,9 @@ def subjects(folder: Path) -> list[Path]:
     return [closed, killed, many, packed]
 
 
-Change = tuple[int, int, bytes]
-"""From where and to where a file is replaced, and by what."""
-
-
-def put(at: int, new: bytes) -> Change:
-    """Bytes in the place of as many."""
-    return at, at + len(new), new
+def put(raw: bytes, at: int, new: bytes) -> bytes:
+    """A file with other bytes in the place of as many."""
+    return raw[:at] + new + raw[at + len(new) :]
 
 
 def anywhere(raw: bytes, generator: random.Random) -> int:
@@ -61,36 +58,29 @@ def something(raw: bytes, generator: random.Random) -> int:
     return generator.choice([at for at, byte in enumerate(raw) if byte])
 
 
-def flipped(raw: bytes, at: int, generator: random.Random) -> Change:
-    return put(at, bytes([raw[at] ^ 1 << generator.randrange(8)]))
+def flipped(raw: bytes, at: int, generator: random.Random) -> bytes:
+    return put(raw, at, bytes([raw[at] ^ 1 << generator.randrange(8)]))
 
 
 def page(raw: bytes, generator: random.Random) -> int:
     return PAGE * generator.randrange(len(raw) // PAGE)
 
 
-def exchanged(raw: bytes, a: int, b: int) -> list[Change]:
-    return [put(a, raw[b : b + PAGE]), put(b, raw[a : a + PAGE])]
+def exchanged(raw: bytes, a: int, b: int) -> bytes:
+    return put(put(raw, a, raw[b : b + PAGE]), b, raw[a : a + PAGE])
 
 
-KINDS: dict[str, Callable[[bytes, random.Random], list[Change]]] = {
-    "bit": lambda raw, r: [flipped(raw, anywhere(raw, r), r)],
-    "eight bits": lambda raw, r: [flipped(raw, anywhere(raw, r), r) for _ in range(8)],
-    "bit of something": lambda raw, r: [flipped(raw, something(raw, r), r)],
-    "byte": lambda raw, r: [put(something(raw, r), bytes([r.choice([0, 127, 128, 255])]))],
-    "64 bytes": lambda raw, r: [put(anywhere(raw, r), bytes(64))],
-    "page": lambda raw, r: [put(page(raw, r), bytes(PAGE))],
+KINDS: dict[str, Callable[[bytes, random.Random], bytes]] = {
+    "bit": lambda raw, r: flipped(raw, anywhere(raw, r), r),
+    "eight bits": lambda raw, r: reduce(lambda left, _: flipped(left, anywhere(raw, r), r), range(8), raw),
+    "bit of something": lambda raw, r: flipped(raw, something(raw, r), r),
+    "byte": lambda raw, r: put(raw, something(raw, r), bytes([r.choice([0, 127, 128, 255])])),
+    "64 bytes": lambda raw, r: put(raw, anywhere(raw, r), bytes(64)),
+    "page": lambda raw, r: put(raw, page(raw, r), bytes(PAGE)),
     "pages": lambda raw, r: exchanged(raw, page(raw, r), page(raw, r)),
-    "truncation": lambda raw, r: [(anywhere(raw, r), len(raw), b"")],
+    "truncation": lambda raw, r: raw[: anywhere(raw, r)],
 }
-
-
-def damaged(whole: bytes, kind: str, generator: random.Random) -> bytes:
-    """The bytes of a file after a kind of damage."""
-    raw = bytearray(whole)
-    for begin, end, new in KINDS[kind](whole, generator):
-        raw[begin:end] = new
-    return bytes(raw)
+"""The bytes of a file after a kind of damage."""
 
 
 def content(file: Path) -> dict[str, object]:
@@ -189,7 +179,7 @@ def campaign(folder: Path) -> Campaign:
             (right, name), kind = judges[k % len(files)], [*KINDS][k // len(files) % len(KINDS)]
             for left in work.iterdir():
                 left.unlink()
-            (work / name).write_bytes(damaged(right.raw, kind, generator))
+            (work / name).write_bytes(KINDS[kind](right.raw, generator))
             yield right, kind, work / name
 
     return Campaign({"damaged files": cases}, judge, {"": None}, "seconds")

@@ -209,8 +209,11 @@ class Kills:
 
     def campaign(self) -> Campaign:
         """A family for each work."""
-        names = self.works(self.folder, self.folder)
-        return Campaign({name: lambda number, _, name=name: [name] * number for name in names}, self.judge, {"": None})
+        return Campaign(
+            {name: lambda number, _, name=name: [name] * number for name in self.works(self.folder, self.folder)},
+            self.judge,
+            {"": None},
+        )
 
 
 def starts(found: Any, path: Any) -> bool:

@@ -101,11 +101,6 @@ def elsewhere(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator)
     return changed(path, event, evolve(event, u=event.u + off))
 
 
-def listed(step: Any) -> LocatedEvent:
-    """A point of the path as an event."""
-    return LocatedEvent("on the path", Kind.EVENT, step.arclength, step.u, step.tangent, 0.0, 0.0, 1, step.index)
-
-
 def left_out(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generator) -> Path | None:
     """Points left out on one and the same curve: no fault, but the tubes are then to hold them."""
     kinks = {e.step for e in path.kinks}
@@ -186,9 +181,8 @@ def straight_on(homotopy: Any, path: Path, proof: Proof, rng: np.random.Generato
     start = (path.steps[k - 1].u, path.steps[k - 1].tangent)
     steps = int(rng.integers(2, 7))
     beyond = trace(homotopy.piece(signs), start=start, target=None, budget=Budget(steps=steps + 1))
-    if len(beyond) < 3:
-        return None
-    kept = [*path.steps[: k + 1], *(s for s in beyond.steps if s.arclength > 1.2 * beyond.steps[1].arclength)]
+    least = 1.2 * beyond.arclength[:2].max()
+    kept = [*path.steps[: k + 1], *(s for s in beyond.steps if s.arclength > least)]
     if len(kept) < k + 2:
         return None
     known = [e for e in path.events if e.step < k or (e.step == k and rng.random() < 0.5)]
@@ -226,7 +220,11 @@ def judge(case: tuple[Any, Path, Any, Path], way: Any) -> Verdict:
         return f"{fault.__name__} refused", np.nan
     if fault is left_out:
         kept = {s.u.tobytes() for s in corrupted.steps}
-        gone = [listed(s) for s in path.steps if s.u.tobytes() not in kept]
+        gone = [
+            LocatedEvent("on the path", Kind.EVENT, s.arclength, s.u, s.tangent, 0.0, 0.0, 1, s.index)
+            for s in path.steps
+            if s.u.tobytes() not in kept
+        ]
         holding = numbered(path, [s for s in path.steps if s.u.tobytes() in kept], [*path.events, *gone])
         # Rational proofs are of the lines themselves, and take no event that is no kink.
         if isinstance(homotopy, Linear) or proved(homotopy, holding):

@@ -13,10 +13,8 @@ import numpy as np
 from attrs import frozen
 from scipy.optimize import brentq
 
+from continuation import from_functions
 from continuation.arrays import Array
-
-Scalar = Callable[[Any, Any], Any]
-"""(x_0, s) -> p."""
 
 
 @frozen(eq=False)
@@ -25,89 +23,74 @@ class Crossed:
 
     Attributes
     ----------
-    scalar : Scalar
+    homotopy : Homotopy
+    original : callable
+        (y, lam) to (x, s).
     curve : callable
-        s, or for an arm x_0, to the point (x_0, s) of the path, for the start and for what is checked.
+        s to the point (x_0, s) of the path.
     crossings : list of (x_0, s)
         On the way, in order.
-    begin, end : float
-        Of s.
-    mix, shape, unmix : ndarray, shape (N, N), (N, 4), (N, N)
-        T, the coefficients of the unknowns that follow, and T^-1.
-    scales, origin, equations : ndarray
-        D and a, c and b, E.
-    angle : float
-        The least difference of slopes at a crossing.
+    resolution : float
+        The error of a crossing's place by round-off: in y, if zero is far off, and in the matrix products of H'.
+        It grows where branches nearly touch.
     """
 
-    scalar: Scalar
+    homotopy: Any
+    original: Callable[[Any, Any], tuple[Any, Any]]
     curve: Callable[[float], tuple[float, float]]
     crossings: list[tuple[float, float]]
-    begin: float
-    end: float
-    mix: Array
-    shape: Array
-    scales: Array
-    origin: Array
-    equations: Array
-    unmix: Array
-    angle: float = 1.0
-
-    def _x(self, y: Any, lam: Any) -> tuple[Array, float]:
-        return self.unmix @ ((y - self.origin[:-1]) / self.scales[:-1]), (lam - self.origin[-1]) / self.scales[-1]
-
-    def point(self, x0: float, s: float) -> tuple[Array, float]:
-        """The point of the path in the tracer's units."""
-        x = np.append(x0, self._follow(x0, s))
-        return self.scales[:-1] * (self.mix @ x) + self.origin[:-1], self.scales[-1] * s + self.origin[-1]
-
-    def first(self, y: Array, lam: float) -> tuple[float, float]:
-        """(x_0, s) of a point."""
-        x, s = self._x(y, lam)
-        return float(x[0]), float(s)
-
-    def _follow(self, x0: Any, s: Any) -> Any:
-        a, b, c, d = self.shape[1:].T
-        return a * np.sin(b * s + c) + d * x0 * s
-
-    @property
-    def resolution(self) -> float:
-        """The error of a crossing's place by round-off: in y, if zero is far off, and in the matrix products of H'.
-
-        It grows where branches nearly touch.
-        """
-        found = 0.0
-        for x0, s in self.crossings:
-            size = np.abs(np.append(*self.point(x0, s))) / self.scales
-            inner = np.eye(self.origin.size - 1)
-            inner[1:, 0] = null = -self.shape[1:, 3] * s
-            products = np.abs(self.unmix) @ np.abs(self.mix @ np.append(1.0, -null))
-            products = np.abs(np.linalg.inv(self.equations)[0]) @ (np.abs(self.equations) @ (np.abs(inner) @ products))
-            found = max(found, float(np.abs(self.unmix[0]) @ size[:-1] + size[-1] + products))
-        # The kernels of OpenBLAS give up to 420 of these units: a product of n terms is rounded n times.
-        return 1000.0 * float(np.finfo(float).eps) * found / self.angle
-
-    def start(self) -> tuple[Array, float]:
-        return self.point(*self.curve(self.begin))
-
-    @property
-    def target(self) -> float:
-        return float(self.scales[-1] * self.curve(self.end)[1] + self.origin[-1])
-
-    def residual(self, y: Any, lam: Any) -> Any:
-        x, s = self._x(y, lam)
-        return self.equations @ np.concatenate([np.stack([self.scalar(x[0], s)]), x[1:] - self._follow(x[0], s)])
+    resolution: float
 
 
-def _dressed(rng: np.random.Generator, n: int, units: float, **known: Any) -> Crossed:
-    mix = np.eye(n) + rng.normal(0.0, 0.5 / np.sqrt(n), (n, n))
-    equations = np.eye(n) + rng.normal(0.0, 0.5 / np.sqrt(n), (n, n))
+def _dressed(
+    rng: np.random.Generator,
+    n: int,
+    units: float,
+    scalar: Callable[[Any, Any], Any],
+    curve: Callable[[float], tuple[float, float]],
+    crossings: list[tuple[float, float]],
+    begin: float,
+    end: float,
+    angle: float = 1.0,
+) -> Crossed:
+    """p = `scalar` with followers, mixed and in units; the path is `curve` from s = begin to end.
+
+    `angle` is the least difference of slopes at a crossing.
+    """
+    mix, equations = (np.eye(n) + rng.normal(0.0, 0.5 / np.sqrt(n), (n, n)) for _ in range(2))
     D = 10.0 ** rng.uniform(-units, units, n + 1)
     shift = D * rng.normal(0.0, 1.0, n + 1) * 10.0 ** rng.uniform(0.0, 3.0 * min(units, 1.0), n + 1)
     E = 10.0 ** rng.uniform(-units, units, n)
+    equations = E[:, None] * equations
     shape = rng.normal(0.0, 0.5, (n, 4))
-    known |= {"mix": mix, "unmix": np.linalg.inv(mix), "shape": shape, "scales": D}
-    return Crossed(origin=shift, equations=E[:, None] * equations, **known)
+    unmix = np.linalg.inv(mix)
+
+    def follow(x0: Any, s: Any) -> Any:
+        a, b, c, d = shape[1:].T
+        return a * np.sin(b * s + c) + d * x0 * s
+
+    def original(y: Any, lam: Any) -> tuple[Any, Any]:
+        return unmix @ ((y - shift[:-1]) / D[:-1]), (lam - shift[-1]) / D[-1]
+
+    def point(x0: float, s: float) -> tuple[Array, float]:
+        return D[:-1] * (mix @ np.append(x0, follow(x0, s))) + shift[:-1], float(D[-1] * s + shift[-1])
+
+    def residual(y: Any, lam: Any) -> Any:
+        x, s = original(y, lam)
+        return equations @ np.concatenate([np.stack([scalar(x[0], s)]), x[1:] - follow(x[0], s)])
+
+    def rounding(x0: float, s: float) -> float:
+        size = np.abs(np.append(*point(x0, s))) / D
+        inner = np.eye(n)
+        inner[1:, 0] = null = -shape[1:, 3] * s
+        products = np.abs(unmix) @ np.abs(mix @ np.append(1.0, -null))
+        products = np.abs(np.linalg.inv(equations)[0]) @ (np.abs(equations) @ (np.abs(inner) @ products))
+        return float(np.abs(unmix[0]) @ size[:-1] + size[-1] + products)
+
+    # The kernels of OpenBLAS give up to 420 of these units: a product of n terms is rounded n times.
+    worst = 1000.0 * float(np.finfo(float).eps) * max(rounding(*at) for at in crossings) / angle
+    homotopy = from_functions(residual, start=point(*curve(begin)), target=point(*curve(end))[1])
+    return Crossed(homotopy, original, curve, crossings, worst)
 
 
 def _graph(k: Array, s: Any) -> Any:

@@ -27,18 +27,18 @@ LOCATED = 1e-10
 
 def judged(problem: Crossed, preset: ct.Preset) -> tuple[str, float, Any]:
     """The fault of a problem's trace, or ""; the largest error of a branch point; the path."""
-    path = ct.trace(problem, preset=preset, budget=ct.Budget(steps=1000))
+    path = ct.trace(problem.homotopy, preset=preset, budget=ct.Budget(steps=1000))
     if not path.success:
         return f"stuck: {path.status.name}", np.nan, path
     found = [event for event in path.events if event.kind == ct.Kind.BRANCH_POINT]
-    x, s = problem.first(path.endpoint.y, path.endpoint.lam)
+    x, s = problem.original(path.endpoint.y, path.endpoint.lam)
     expected = problem.curve(s)
-    if max(abs(x - expected[0]), abs(s - expected[1])) > 1e-7:
+    if max(abs(x[0] - expected[0]), abs(s - expected[1])) > 1e-7:
         return ("switched, " + ("said" if len(found) % 2 != len(problem.crossings) % 2 else "silent")), np.nan, path
     if len(found) != len(problem.crossings):
         return f"found {len(found)} of {len(problem.crossings)}", np.nan, path
-    places = [problem.first(event.y, event.lam) for event in found]
-    error = max(max(abs(p - q), abs(r - t)) for (p, r), (q, t) in zip(places, problem.crossings))
+    places = [problem.original(event.y, event.lam) for event in found]
+    error = max(max(abs(p[0] - q), abs(r - t)) for (p, r), (q, t) in zip(places, problem.crossings))
     return ("" if error <= LOCATED + problem.resolution else "badly located"), error, path
 
 

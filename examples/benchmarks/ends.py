@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -29,14 +30,13 @@ BUDGET = continuation.Budget(steps=2000, factorizations=6000)
 
 @frozen
 class Case:
-    """A path: its residual, start and target, how it may end, and how many folds it has; y at the target if known."""
+    """A path: its residual, start and target, how it may end, and how many folds it has."""
 
     residual: Residual
     start: tuple[Array, float]
     target: float
     ends: tuple[Status, ...] = (Status.REACHED_TARGET,)
     folds: int = 0
-    y: float | None = None
 
     def homotopy(self, D: float = 1.0, a: float = 1.0, E: float = 1.0) -> Any:
         """In units D of the unknowns, a of the parameter, E of the equations."""
@@ -86,10 +86,8 @@ def localised(generator: np.random.Generator) -> Case:
         first = y[:1] + y[:1] ** 3 - lam
         return np.concatenate([first, y[1:] * (1.0 + y[1:]) - c * y[:-1]])
 
-    y = [0.6]
-    for _ in range(n - 1):
-        y.append(float(2.0 * c * y[-1] / (1.0 + np.sqrt(1.0 + 4.0 * c * y[-1]))))
-    return Case(residual, (np.array(y), 0.6 + 0.6**3), 2.0)
+    cells = accumulate(range(n - 1), lambda y, _: 2.0 * c * y / (1.0 + np.sqrt(1.0 + 4.0 * c * y)), initial=0.6)
+    return Case(residual, (np.array([*cells]), 0.6 + 0.6**3), 2.0)
 
 
 def hysteresis(generator: np.random.Generator) -> Case:
@@ -136,8 +134,7 @@ def weak(generator: np.random.Generator) -> Case:
 def pole(generator: np.random.Generator) -> Case:
     """y ~ (1 - lam)^-p for p = 1/3 to 4, given as y or as its inverse, and a target on it or beyond."""
     p, target = float(generator.choice([1 / 3, 1 / 2, 1.0, 2.0, 3.0, 4.0])), float(generator.choice([1.0, 1.5]))
-    ends = (Status.DIVERGED,)
-    return scalar(lambda y, lam: y ** (-1.0 / p) - 1.0 + lam, 1.0, 0.0, target, ends=ends)
+    return scalar(lambda y, lam: y ** (-1.0 / p) - 1.0 + lam, 1.0, 0.0, target, ends=(Status.DIVERGED,))
 
 
 FAMILIES: dict[str, Callable[[np.random.Generator], Case]] = {

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import scipy.sparse as sp
-from campaign import asked, timed
+from campaign import Campaign, asked, timed
 
 import continuation
 
@@ -24,8 +24,6 @@ def brusselator(n):
     h2 = (1.0 / (n + 1)) ** 2
     L = sp.csc_array(sp.diags_array([1.0, -2.0, 1.0], offsets=[-1, 0, 1], shape=(n, n)) / h2)
     start, target = (np.repeat([A, 4.0 / A], n), 4.0), 6.2
-    at_ends = np.zeros(n)
-    at_ends[[0, -1]] = 1.0 / h2
 
     def residual(np, y, lam):
         x, z = y[:n], y[n:]
@@ -41,7 +39,7 @@ def brusselator(n):
         parts = [[2.0 * x * z - lam - 1.0, x * x], [lam - 2.0 * x * z, -x * x]]
         blocks = [[sp.diags_array(part) for part in row] for row in parts]
         blocks[0][0], blocks[1][1] = blocks[0][0] + DX * L, blocks[1][1] + DY * L
-        return sp.csc_array(sp.block_array(blocks)), np.concatenate((-x, x + DY / A * at_ends))
+        return sp.csc_array(sp.block_array(blocks)), np.concatenate((-x, x + DY / A * (-L @ np.ones(n))))
 
     return residual, jacobian, start, target
 
@@ -100,21 +98,24 @@ def ways(model):
     return {name: make for name, make in made.items() if name.split()[0] == "residual" or find_spec(name.split()[0])}
 
 
-def main():
-    """Print a line a way."""
-    names, _, options = asked(rounds=5, points=64)
-    for title, model in {"Brusselator": brusselator(options.points), "network": network(4)}.items():
-        for preset in (continuation.FAST, continuation.SERIES):
-            for name, make in ways(model).items():
-                if names and name not in names:
-                    continue
-                homotopy, made = timed(make)
-                work = partial(continuation.trace, homotopy, preset=preset)
-                _, first = timed(work)
-                path, least = timed(work, options.rounds)
-                print(f"{title}, {preset.name} {name:13} {1e3 * least:8.1f} ms, made in {made + first - least:5.2f} s, "
-                      f"{path.status.name}, {len(path.turning_points)} folds; {path.counts}", flush=True)  # fmt: skip
+def judge(made, way, rounds):
+    """The path of one of the homotopies in words, with the seconds to make it; the milliseconds of the path."""
+    preset, name = way
+    homotopy, making = timed(made[name])
+    work = partial(continuation.trace, homotopy, preset=preset)
+    _, first = timed(work)
+    path, least = timed(work, rounds)
+    return f"{path.status.name}, made in {making + first - least:.2f} s, {len(path.turning_points)} folds; " \
+           f"{path.counts}", 1e3 * least  # fmt: skip
 
 
 if __name__ == "__main__":
-    main()
+    names, _, options = asked(rounds=5, points=64)
+    models = {"Brusselator": brusselator(options.points), "network": network(4)}
+    presets = {preset.name: preset for preset in (continuation.FAST, continuation.SERIES)}
+    Campaign(
+        {title: lambda number, seed, model=model: [ways(model)] for title, model in models.items()},
+        lambda made, way: judge(made, way, options.rounds),
+        {f"{title} {name}": (preset, name) for title, preset in presets.items() for name in names or ways(network(4))},
+        "ms",
+    ).run(1)

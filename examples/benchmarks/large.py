@@ -13,14 +13,14 @@ import scipy.sparse as sp
 from campaign import WRONG, Campaign, Verdict, asked, timed
 
 from problems import lcp
+from problems.bifurcation.bratu_2d import five_point
 from problems.lcp import LCP, MixedLCP
 from problems.scenes.torsion import Torsion
 
 
 def obstacle_2d(m: int) -> LCP:
     """A membrane over a bump, five-point differences on m x m points."""
-    T = sp.diags_array([-1.0, 2.0, -1.0], offsets=[-1, 0, 1], shape=(m, m), dtype=float)
-    A = sp.kronsum(T, T, format="csr") * (m + 1.0) ** 2
+    A = five_point(m) * -((m + 1.0) ** 2)
     t = np.arange(1, m + 1) / (m + 1)
     obstacle = 0.3 - 3.0 * np.add.outer((t - 0.5) ** 2, (t - 0.5) ** 2).ravel()
     return LCP(A, A @ obstacle + 5.0)

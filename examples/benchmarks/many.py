@@ -16,18 +16,16 @@ import claims
 import numpy as np
 from campaign import WRONG, Campaign, Cases, Verdict, asked, timed
 
-from continuation.arrays import Array
 from problems import lcp
 from problems.lcp import LCP, Outcome
 
-Stack = tuple[Array, Array]
-Kind = Callable[[int, int, np.random.Generator], Stack]
+Kind = Callable[[int, int, np.random.Generator], claims.Data]
 
 
 def stacked(kind: Callable[[int, np.random.Generator], claims.Data], units: float = 0.0) -> Kind:
     """So many problems of a kind of `claims.py`, with rows and columns in units of 10^-units to 10^units."""
 
-    def draw(k: int, n: int, r: np.random.Generator) -> Stack:
+    def draw(k: int, n: int, r: np.random.Generator) -> claims.Data:
         A, q = (np.array(part) for part in zip(*(kind(n, r) for _ in range(k))))
         rows, columns = 10.0 ** r.uniform(-units, units, (2, k, n))
         return rows[:, :, None] * A * columns[:, None, :], rows * q
@@ -46,8 +44,8 @@ def together(n: int, k: int) -> str:
     """Microseconds each, certified, beside a loop over quantecon's Lemke, which certifies nothing."""
     A, q = KINDS["p_matrices"](k, n, np.random.default_rng(n))
     found, ours = timed(lambda: lcp.solve_many(A, q))
-    line = f"n = {n}, {k} problems: {1e6 * ours / k:.1f} us each, {found.solved.sum()} certified, "
-    line += f"{found.singly.size} one by one, relative residual {found.relative_residual.max():.0e}"
+    line = f"n = {n}, {k} problems: {1e6 * ours / k:.1f} us each, {found.solved.sum()} certified, " \
+           f"{found.singly.size} one by one, relative residual {found.relative_residual.max():.0e}"  # fmt: skip
     if find_spec("quantecon"):
         lemke = import_module("quantecon.optimize").lcp_lemke
         lemke(A[0], q[0])

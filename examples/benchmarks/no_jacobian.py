@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from campaign import asked, timed
 from five import brusselator
 from five import ways as written
+from scipy.sparse.linalg import LaplacianNd
 
 import continuation
 from continuation.linear import Banded
@@ -24,9 +25,7 @@ from problems.bifurcation.bratu_2d import five_point
 def swift_hohenberg(n):
     """r u - (1 + d^2/dx^2)^2 u + 2 u^2 - u^3 = 0 on (0, 40), mirrored at both ends: from a pattern in the middle."""
     x, g = (np.arange(n) + 0.5) * 40.0 / n, (n / 40.0) ** 2
-    line = np.full(n, 1.0 - 2.0 * g)
-    line[[0, -1]] = 1.0 - g
-    L = sp.diags_array([np.full(n - 1, g), line, np.full(n - 1, g)], offsets=[-1, 0, 1])
+    L = sp.eye_array(n) + g * LaplacianNd((n,), boundary_conditions="neumann", dtype=float).tosparse()
     square = sp.dia_array(-(L @ L))
 
     def once(u):

@@ -74,10 +74,9 @@ def unsolvable(k: int, r: np.random.Generator) -> LCP:
 
 def unit_vectors(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:
     """Each column of the one player's costs has one entry; the other's are uniform."""
-    m, X = len(Y), np.zeros_like(Y)
+    m = len(Y)
     Y = -r.random((m, m))
-    X[r.integers(0, m, m), np.arange(m)] = -1.0
-    return X, Y
+    return -np.eye(m)[:, r.integers(0, m, m)], Y
 
 
 def dual_cyclic(Y: Array, r: np.random.Generator) -> tuple[Array, Array]:

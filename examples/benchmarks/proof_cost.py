@@ -39,8 +39,11 @@ def random_lcps(*orders: int) -> Iterator[tuple[str, Any]]:
 
 if __name__ == "__main__":
     large = "large" in asked()[0]
-    small = [(f"example {e.number}", KKTHomotopy(e.problem, e.x0), 3) for e in paper.EXAMPLES]
-    small += [("freudenstein-roth", FreudensteinRoth(), 3), ("aircraft", Aircraft(), 3, Budget(steps=60))]
+    small = [
+        *((f"example {e.number}", KKTHomotopy(e.problem, e.x0), 3) for e in paper.EXAMPLES),
+        ("freudenstein-roth", FreudensteinRoth(), 3),
+        ("aircraft", Aircraft(), 3, Budget(steps=60)),
+    ]
     for row in [
         *([] if large else small),
         *random_lcps(*((100,) if large else (20, 40))),

@@ -13,11 +13,11 @@ class Rescaled:
     """A homotopy's path in other units: y = D y0 + c, lam = a lam0 + b, and the equations multiplied by E."""
 
     homotopy: Any
-    D: Array
-    c: Array
-    E: Array
-    a: float
-    b: float
+    D: Array | float = 1.0
+    c: Array | float = 0.0
+    E: Array | float = 1.0
+    a: float = 1.0
+    b: float = 0.0
 
     @property
     def target(self) -> float | None:
@@ -38,17 +38,11 @@ class Rescaled:
     def jacobian(self, y: Array, lam: float) -> tuple[Array, Array]:
         """Dense, whatever the homotopy's is."""
         H_y, H_lam = self.homotopy.jacobian((y - self.c) / self.D, (lam - self.b) / self.a)
-        return self.E[:, None] * (H_y @ np.eye(self.D.size)) / self.D, self.E * np.asarray(H_lam) / self.a
+        return np.reshape(self.E, (-1, 1)) * (H_y @ np.eye(y.size)) / self.D, self.E * np.asarray(H_lam) / self.a
 
     def original(self, u: Array) -> Array:
         """A point (y, lam) in the units of the homotopy."""
         return np.append((u[:-1] - self.c) / self.D, (u[-1] - self.b) / self.a)
-
-
-def plain(homotopy: Any) -> Rescaled:
-    """In its own units."""
-    n = np.size(homotopy.start()[0])
-    return Rescaled(homotopy, np.ones(n), np.zeros(n), np.ones(n), 1.0, 0.0)
 
 
 def rescaled(homotopy: Any, extent: Array, generator: np.random.Generator) -> Rescaled:

@@ -37,9 +37,13 @@ def measured(name: str, rounds: int = 20) -> dict[str, float]:
     path, seconds = timed(lambda: continuation.trace(homotopy, **options), rounds)
     _, least = timed(lambda: continuation.trace(homotopy, **plain), rounds)
     steps = path.counts.accepted + path.counts.rejected
-    number = calls(lambda: continuation.trace(homotopy, **options))
-    cost = {"calls a step": number / steps, "us a step": 1e6 * seconds / steps, "times unexamined": seconds / least}
-    return {"steps": steps, **path.counts.as_dict(), **cost}
+    return {
+        "steps": steps,
+        **path.counts.as_dict(),
+        "calls a step": calls(lambda: continuation.trace(homotopy, **options)) / steps,
+        "us a step": 1e6 * seconds / steps,
+        "times unexamined": seconds / least,
+    }
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 from campaign import WRONG, Campaign, Cases, Verdict
-from rescaled import Rescaled, plain, rescaled
+from rescaled import Rescaled, rescaled
 
 import continuation
 from problems.bifurcation import Aircraft, Bratu1D, Bratu2D, Circle, Cusp, ExponentialCosine, FreudensteinRoth
@@ -73,7 +73,7 @@ def extent_of(path: continuation.Path) -> Any:
 @cache
 def reference(name: str, preset: continuation.Preset) -> continuation.Path:
     """The path in the problem's own units."""
-    return PROBLEMS[name].trace(plain(PROBLEMS[name].make()), preset)
+    return PROBLEMS[name].trace(Rescaled(PROBLEMS[name].make()), preset)
 
 
 def cases(name: str) -> Cases:

@@ -55,7 +55,7 @@ def test_a_correction_below_the_last_digit_says_nothing_of_scales(at):
     """At its turning point a circle's first correction was lost in y's rounding: a first step of 4e-7 of its radius."""
     circle, D, a = run.PROBLEMS["circle"], 2.4e5, 2.1e4
     units = run.Rescaled(Circle(), np.array([D]), np.array([D * at]), np.ones(1), a, 1e-3 * a)
-    path, plain = circle.trace(units, SERIES), circle.trace(run.plain(Circle()), SERIES)
+    path, plain = circle.trace(units, SERIES), circle.trace(run.Rescaled(Circle()), SERIES)
     assert len(path.steps) == len(plain.steps)
 
 
@@ -70,7 +70,7 @@ def first_weights(homotopy):
 @pytest.mark.parametrize("name", ["cusp", "Bratu 1D", "exponential-cosine 5"])
 def test_the_first_scales_do_not_depend_on_where_zero_is(name, offset):
     """They solve an equation, to 1e-4; by a search that ended nearby they differed by up to a hundredth."""
-    here = run.plain(run.PROBLEMS[name].make())
+    here = run.Rescaled(run.PROBLEMS[name].make())
     there = evolve(here, c=np.full(here.c.size, offset))
     np.testing.assert_allclose(first_weights(there), first_weights(here), rtol=1e-4)
 

@@ -159,8 +159,7 @@ def resumes(folder: Path, size: int) -> Iterator[str]:
     """Two resumes of one file at once: one goes on, the other is refused, and the file is whole."""
     whole, left = trace(HOMOTOPY, **OPTIONS), killed(folder / "killed.h5", HOMOTOPY, 20, 5, **OPTIONS)
     for k in range(size):
-        file = folder / f"two{k}.h5"
-        shutil.copy(left, file)
+        file = shutil.copy(left, folder / f"two{k}.h5")
         with ProcessPoolExecutor(2, mp_context=get_context("fork")) as pool:
             errors = [future.exception() for future in [pool.submit(resume, file) for _ in range(2)]]
         # Whoever comes when the other is done finds a path that has ended.

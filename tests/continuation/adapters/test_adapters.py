@@ -12,7 +12,7 @@ from continuation import FAST, SERIES, trace
 from continuation.linear import Banded
 from problems.bifurcation import Bratu1D
 
-from ...util import benchmark, by_preset
+from ...util import benchmark, by_preset, path_of
 
 five = benchmark("five.py")
 MODELS = {"brusselator": five.brusselator(6), "network": five.network(3, 8)}
@@ -97,8 +97,7 @@ def test_what_jet_does_not_know_arrives_through_points_of_the_path():
 
     homotopy = by_jax(unknown, ([0.0], 0.0), target=1.0)
     assert not hasattr(homotopy, "taylor")
-    path = trace(homotopy, preset=SERIES)
-    assert path.success
+    path = path_of(homotopy, preset=SERIES)
     assert any("points of the path" in note for note in path.counts.notes)
 
 
@@ -175,8 +174,7 @@ def test_special_functions_sizes_and_jumps_of_sympy_are_followed(text, preset):
     sympy = pytest.importorskip("sympy")
     y, lam = sympy.symbols("y lam")
     homotopy = continuation.from_sympy([sympy.sympify(text) - lam], [y], lam, ([0.0], 0.0), target=1.0)
-    path = trace(homotopy, preset=preset)
-    assert path.success
+    path = path_of(homotopy, preset=preset)
     assert homotopy.residual(path.endpoint.y, 1.0) == pytest.approx(0.0, abs=1e-14)
 
 

@@ -109,11 +109,9 @@ HARM = {
 @pytest.mark.parametrize("sealed", [False, True], ids=["damaged", "sealed"])
 @pytest.mark.parametrize("harm", HARM)
 def test_one_line_or_nothing_amiss(tmp_path, base, harm, sealed):
-    secret, right, refused = tmp_path / "secret.h5", read(base).u, 0
-    shutil.copy(base, secret)
+    secret, right, refused = shutil.copy(base, tmp_path / "secret.h5"), read(base).u, 0
     for name, operation in OPERATIONS.items():
-        file = tmp_path / f"{name}.h5"
-        shutil.copy(base, file)
+        file = shutil.copy(base, tmp_path / f"{name}.h5")
         with h5py.File(file, "r+", libver="latest") as opened:
             HARM[harm](opened, secret)
             if sealed:
@@ -148,8 +146,7 @@ def test_a_closed_archive_says_that_it_is_closed(base):
 
 
 def test_a_damaged_row_is_named_and_the_sound_ones_are_kept(tmp_path, base):
-    file = tmp_path / "run.h5"
-    shutil.copy(base, file)
+    file = shutil.copy(base, tmp_path / "run.h5")
     with h5py.File(file, "r+", libver="latest") as opened:
         opened["y"][7, 1] += 1e-12
     with open_archive(file) as archive:
@@ -167,8 +164,7 @@ def test_a_damaged_row_is_named_and_the_sound_ones_are_kept(tmp_path, base):
 
 
 def test_what_is_not_asked_for_may_be_damaged(tmp_path, base):
-    file = tmp_path / "run.h5"
-    shutil.copy(base, file)
+    file = shutil.copy(base, tmp_path / "run.h5")
     with h5py.File(file, "r+", libver="latest") as opened:
         opened.attrs["title"] = "another"
         opened["n_points"][0] += 1

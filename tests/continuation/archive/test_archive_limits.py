@@ -33,8 +33,7 @@ def changed(tmp_path, small):
     """A copy in which something is changed."""
 
     def make(change):
-        file = tmp_path / "changed.h5"
-        shutil.copy(small, file)
+        file = shutil.copy(small, tmp_path / "changed.h5")
         with h5py.File(file, "r+") as opened:
             change(opened)
         return file
@@ -118,8 +117,7 @@ def test_whole_blocks_before_the_cut_are_recovered(tmp_path, long):
         whole, path = archive.points.size, archive.path(0)
     size, kept = long.stat().st_size, []
     for share in SHARES:
-        file = tmp_path / f"{share}.h5"
-        shutil.copy(long, file)
+        file = shutil.copy(long, tmp_path / f"{share}.h5")
         os.truncate(file, int(share * size))
         with pytest.raises(ArchiveError, match=r"its last \d+ bytes are missing; `recover` keeps the rows"):
             open_archive(file)
@@ -135,8 +133,7 @@ def test_whole_blocks_before_the_cut_are_recovered(tmp_path, long):
 
 
 def test_of_a_head_that_is_cut_off_nothing_is_left_and_that_is_said(tmp_path, small):
-    file = tmp_path / "run.h5"
-    shutil.copy(small, file)
+    file = shutil.copy(small, tmp_path / "run.h5")
     os.truncate(file, 20_000)
     with pytest.raises(ArchiveError, match="truncated or damaged"):
         recover(file)

@@ -136,8 +136,7 @@ def test_nothing_is_executed(tmp_path, half, place, tree):
     _registered("nobody:nothing")
     FIRED.clear()
     refusals = 0
-    made = tmp_path / "made.h5"
-    shutil.copy(half, made)
+    made = shutil.copy(half, tmp_path / "made.h5")
     place(made, tree)
     for ended in (True, False):
         if not ended:
@@ -149,8 +148,7 @@ def test_nothing_is_executed(tmp_path, half, place, tree):
         whole = place is in_problem or tree is TREES["a function"]
         for name in OPERATIONS if ended and whole else ("open", "checkpoint", "recover", "resume"):
             operation = OPERATIONS[name]
-            file = tmp_path / f"{name}{ended}.h5"
-            shutil.copy(made, file)
+            file = shutil.copy(made, tmp_path / f"{name}{ended}.h5")
             known = set(sys.modules)
             complaint, _ = outcome(operation, file)
             refusals += bool(complaint)

@@ -14,6 +14,7 @@ from continuation.evaluation.evaluator import Evaluator
 from continuation.testing import check_homotopy
 from problems import lcp
 
+from ...util import path_of
 from .util import (
     Bent,
     GelfandBanded,
@@ -82,8 +83,7 @@ CLOSED = {
 @pytest.mark.parametrize("name", CLOSED)
 def test_points_of_a_curve_are_those_of_its_closed_form(name):
     curve, options, off, special = CLOSED[name]
-    path = continuation.trace(curve, tolerance=1e-12, **options)
-    assert path.status is continuation.Status.STOPPED_AT_EVENT
+    path = path_of(curve, tolerance=1e-12, **options, status=continuation.Status.STOPPED_AT_EVENT)
     assert np.abs(off(*path.u.T)).max() <= 1e-10
     for event, u in special.items():
         np.testing.assert_allclose([at.u for at in named(path, event)], [u], rtol=0, atol=1e-10)
@@ -107,8 +107,7 @@ def test_a_family_with_a_factorisation_of_its_own():
         return lcp.KKTHomotopy(lcp.LCP(A @ A.T + np.eye(5), q - 1.0 + mu * d), x0=np.full(5, 0.7))
 
     u = continuation.trace(family(0.0)).crossings(0.5)[0]
-    path = continuation.trace(Curve(family, TargetValue(0.5), (u[:-1], u[-1]), mu=0.0), target=0.3)
-    assert path.success
+    path = path_of(Curve(family, TargetValue(0.5), (u[:-1], u[-1]), mu=0.0), target=0.3)
     assert np.abs(path.y[:, -1] - 0.5).max() <= 1e-12
     there = continuation.solve_at(family(0.3), 0.5, u[:-1])
     np.testing.assert_allclose(path.endpoint.y[:-1], there, rtol=1e-7)
@@ -265,8 +264,7 @@ def test_an_exception_of_the_family_is_said():
         return cusp_form(mu)
 
     curve = Curve(family, first_fold(cusp_form(1.0)), mu=1.0)
-    path = continuation.trace(curve, target=3.0, budget=Budget(steps=60))
-    assert path.status is continuation.Status.LEFT_DOMAIN
+    path = path_of(curve, target=3.0, budget=Budget(steps=60), status=continuation.Status.LEFT_DOMAIN)
     assert "no such state" in path.message
     with pytest.raises(NotFiniteError, match="no such state"):
         Evaluator(Curve(family, TargetValue(0.3), curve.at, mu=1.0), Counts()).residual(np.array([0.5, 0.3, 2.0]))

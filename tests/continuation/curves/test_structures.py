@@ -6,6 +6,7 @@ import pytest
 import continuation
 from continuation import Curve, Family, Kind, TargetValue
 
+from ...util import path_of
 from .util import Diffusing, GelfandBanded, first_fold, named
 
 
@@ -33,7 +34,6 @@ def test_operators_have_curves_of_values_alone():
 def test_hopf_points_of_a_sparse_family(n, accuracy):
     homotopy = Diffusing(n)
     curve = Curve(Family(homotopy, "turn"), Kind.HOPF, (np.zeros(2 * n), homotopy.rate(1) + 0.01))
-    path = continuation.trace(curve, box={"lam": (None, 4.0)})
-    assert path.success
+    path = path_of(curve, box={"lam": (None, 4.0)}, status=continuation.Status.STOPPED_AT_EVENT)
     np.testing.assert_allclose(path.y[:, -2], homotopy.rate(1), rtol=accuracy)
     np.testing.assert_allclose(path.y[:, -1], path.lam, rtol=accuracy)

@@ -14,7 +14,7 @@ from continuation.evaluation.derivatives import from_residual
 from continuation.evaluation.pattern import found
 from continuation.linear import Banded
 
-from ...util import benchmark
+from ...util import benchmark, path_of
 
 alone = benchmark("no_jacobian.py")
 
@@ -111,8 +111,7 @@ def test_a_pattern_that_changes_is_noticed(far, compiled):
     before, after = (derivative(np.linspace(0.0, 1.0, 90), lam)[0].toarray() for lam in (0.25, 0.75))
     assert before[5, 0] == 0.0
     np.testing.assert_allclose(after[2:-1, 0], 0.25 * far, rtol=1e-6)
-    path = trace(homotopy)
-    assert path.success
+    path = path_of(homotopy)
     assert np.abs(residual(path.endpoint.y, 1.0)).max() <= 1e-8
     assert "changed" in str(path.counts)
 

@@ -22,7 +22,7 @@ from continuation.archive import open_archive
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 
-from ...util import every_preset
+from ...util import every_preset, path_of
 from ..util import scalar
 from .util import branch_points, pitchfork, two_graphs
 
@@ -61,8 +61,7 @@ def steps(h):
     ],
 )
 def test_branch_points_are_located_and_the_path_goes_straight_on(homotopy, options, expected, end, preset):
-    path = trace(homotopy, preset=preset, **options)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset, **options)
     assert [event.kind for event in path.events] == [Kind.BRANCH_POINT] * len(expected)
     for event, at in zip(path.events, expected):
         np.testing.assert_allclose(event.u, at, rtol=0, atol=1e-10)

@@ -9,13 +9,12 @@ from continuation import (
     FAST,
     SERIES,
     Budget,
-    Status,
     TargetValue,
     from_functions,
     trace,
 )
 
-from ...util import benchmark, by_preset, every_preset
+from ...util import benchmark, by_preset, every_preset, path_of
 from .util import branch_points, pitchfork, places, two_graphs
 
 campaign = benchmark("crossings.py")
@@ -33,8 +32,7 @@ def test_along_the_arm_of_a_pitchfork(preset, y0):
     # The arm turns in the branch point: corrections beside it would lose half of the digits.
     np.testing.assert_array_equal(path.turning_points[0].u, branch_points(path)[0].u)
     # A target in the crossing itself.
-    path = trace(homotopy, preset=preset, target=0.0, budget=Budget(steps=200))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(homotopy, preset=preset, target=0.0, budget=Budget(steps=200))
     assert abs(path.endpoint.u).max() < 1e-6
 
 
@@ -62,8 +60,7 @@ def test_a_target_just_before_a_crossing_lies_on_the_same_curve(preset, seed):
     first = rng.normal(size=3)
     second, target = first + rng.normal(size=3), -(10.0 ** rng.uniform(-3.0, -0.7))
     f, g = (lambda s, c=c: c[0] * s + c[1] * s * s / 2.0 + c[2] * np.sin(s) for c in (first, second))
-    path = trace(two_graphs(f, g, -2.0, target), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(two_graphs(f, g, -2.0, target), preset=preset)
     assert abs(path.endpoint.y[0] - f(target)) < 1e-9
 
 
@@ -135,8 +132,7 @@ def test_crossings_that_a_path_was_lost_at(family, seed, k, preset):
 @pytest.mark.parametrize(("first", "gap"), [(-0.37, 0.034), (0.61, 0.034), (0.26, 0.01), (0.965, 0.0094)])
 def test_a_trunk_crossed_twice_within_a_step(first, gap, preset):
     """The determinant's sign is the same on both sides."""
-    path = trace(two_graphs(lambda t: 0.0 * t, lambda t: (t - first) * (t - first - gap), -2.0), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(two_graphs(lambda t: 0.0 * t, lambda t: (t - first) * (t - first - gap), -2.0), preset=preset)
     assert places(path) == pytest.approx([first, first + gap], abs=1e-11)
 
 

@@ -11,6 +11,7 @@ from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth
 
+from ...util import path_of
 from ..util import scalar
 
 LINE = scalar(lambda y, lam: y - 2.0 * lam, lambda y, lam: (1.0, -2.0))
@@ -112,8 +113,7 @@ def test_the_start_is_no_event():
 
 @pytest.mark.parametrize(("component", "value"), [(0, 40.0), (1, 1.25), (2, 0.125), (-1, 0.125), (-2, 1.25)])
 def test_any_component_is_landed_on_exactly(component, value):
-    path = trace(FreudensteinRoth(), events=[TargetValue(value, component=component)])
-    assert path.status is Status.STOPPED_AT_EVENT
+    path = path_of(FreudensteinRoth(), events=[TargetValue(value, component=component)], status=Status.STOPPED_AT_EVENT)
     assert path.endpoint.u[component] == value
     assert np.abs(FreudensteinRoth().residual(path.endpoint.y, path.endpoint.lam)).max() <= 1e-11
 
@@ -183,8 +183,7 @@ def test_a_function_that_cubics_know_badly_is_asked_for_a_few_times():
         asked.append(u)
         return 1.0 - 1e12 * abs(u[0] ** 2 + u[1] ** 2 - 1.0)
 
-    path = trace(Circle(), events=[Monitor(function)], target=None)
-    assert path.status is Status.CLOSED
+    path = path_of(Circle(), events=[Monitor(function)], target=None, status=Status.CLOSED)
     assert not named(path, "event")
     # 7,300; 169,000 while every arc was divided into 256 parts.
     assert len(asked) <= 15000

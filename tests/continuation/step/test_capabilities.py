@@ -9,7 +9,7 @@ from continuation.predictors import Tangent
 from continuation.step.capabilities import max_step_of
 from problems.bifurcation import FreudensteinRoth
 
-from ...util import every_preset
+from ...util import every_preset, path_of
 
 
 class Straight:
@@ -39,8 +39,7 @@ def test_a_path_comes_up_to_its_boundary_and_no_farther(controller):
         return (1.0 - u[0]) / v[0] if v[0] > 0.0 else np.inf
 
     homotopy = Straight(residual=lambda y, lam: y - lam**2, target=2.0, max_step=room)
-    path = trace(homotopy, predictor=Tangent(), controller=controller)
-    assert path.status is Status.STEP_TOO_SMALL
+    path = path_of(homotopy, predictor=Tangent(), controller=controller, status=Status.STEP_TOO_SMALL)
     assert 0.999 < path.endpoint.y[0] == path.y.max() <= 1.0
 
 

@@ -12,6 +12,7 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.predictors import Tangent
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth
 
+from ...util import path_of
 from ..util import scalar
 
 DEPENDENT = from_functions(
@@ -60,8 +61,7 @@ def test_a_start_from_which_no_path_leaves(homotopy, status, words):
 
 def test_a_start_far_off_the_path_is_put_on_it():
     """Newton's first increment is 33; each of the next takes back a third of what is left."""
-    path = trace(scalar(lambda y, lam: y**3 - 1.0 - lam, start=(0.1, 0.0)))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(scalar(lambda y, lam: y**3 - 1.0 - lam, start=(0.1, 0.0)))
     np.testing.assert_allclose(path.u[[0, -1], 0], (1.0, 2.0 ** (1.0 / 3.0)), rtol=1e-8)
 
 
@@ -75,8 +75,7 @@ def test_a_start_far_off_the_path_is_put_on_it():
     ids=["abs", "abs with derivative", "kink"],
 )
 def test_a_path_ends_at_a_kink_and_says_so(homotopy, kink):
-    path = trace(homotopy)
-    assert path.status is Status.STEP_TOO_SMALL
+    path = path_of(homotopy, status=Status.STEP_TOO_SMALL)
     np.testing.assert_allclose(path.endpoint.u, kink, rtol=0, atol=1e-8)
     assert path.events == []
     # The attempts that failed there, the last of which the message names.
@@ -94,8 +93,7 @@ def test_a_path_ends_at_a_kink_and_says_so(homotopy, kink):
     ids=["residual", "Jacobian"],
 )
 def test_what_turns_nan_ends_the_domain(residual, slope):
-    path = trace(scalar(residual, slope))
-    assert path.status is Status.LEFT_DOMAIN
+    path = path_of(scalar(residual, slope), status=Status.LEFT_DOMAIN)
     assert 0.5 - 1e-8 <= path.endpoint.lam <= 0.5
     assert "not finite" in path.message
 
@@ -177,8 +175,11 @@ class CurveUntil(Tangent):
 
 
 def test_a_predictor_that_fails_is_named_and_no_step_is_blamed():
-    path = trace(scalar(lambda y, lam: y - lam, lambda y, lam: (1.0, -1.0)), predictor=CurveUntil())
-    assert path.status is Status.PREDICTOR_FAILED
+    path = path_of(
+        scalar(lambda y, lam: y - lam, lambda y, lam: (1.0, -1.0)),
+        predictor=CurveUntil(),
+        status=Status.PREDICTOR_FAILED,
+    )
     assert path.message.endswith("It says: there is no curve.")
     assert path.endpoint.lam > 0.2
     assert path.rejected == ()
@@ -193,8 +194,7 @@ def test_a_predictor_that_fails_is_named_and_no_step_is_blamed():
     ],
 )
 def test_a_budget_is_named_and_looked_at_between_attempts(homotopy, budget, words):
-    path = trace(homotopy, budget=budget)
-    assert path.status is Status.BUDGET_EXHAUSTED
+    path = path_of(homotopy, budget=budget, status=Status.BUDGET_EXHAUSTED)
     assert words in path.message
     assert path.counts.accepted == len(path) - 1 <= budget.steps
     assert path.counts.factorizations < budget.factorizations + 15
@@ -230,7 +230,6 @@ def test_ctrl_c_loses_nothing(k):
     assert path.status is Status.INTERRUPTED
     np.testing.assert_array_equal(path.u, whole.u[: len(path)] if len(path) else path.u)
     if tracer.state is not None:
-        rest = trace(Cusp(), state=tracer.state)
-        assert rest.status is Status.REACHED_TARGET
+        rest = path_of(Cusp(), state=tracer.state)
         np.testing.assert_array_equal(rest.u, whole.u[len(path) :])
         assert len(path.events) + len(rest.events) == len(whole.events)

@@ -9,6 +9,8 @@ from continuation import Budget, Euclidean, Status, TargetValue, from_functions,
 from continuation.archive import PathLog, resume
 from problems.bifurcation import Cusp
 
+from ...util import path_of
+
 circle = from_functions(
     lambda y, lam: np.stack([y[0] ** 2 + lam**2 - 1.0]),
     lambda y, lam: (np.array([[2.0 * y[0]]]), np.array([2.0 * lam])),
@@ -23,8 +25,7 @@ def test_a_step_that_is_refused_is_tried_again_shorter():
         turn = np.degrees(np.arccos(np.clip(arc.a.tangent @ arc.b.tangent, -1.0, 1.0)))
         return f"it turns by {turn:.0f} degrees" if turn > 10.0 else None
 
-    path = trace(circle, target=0.8, metric=Euclidean(), guards=[bent])
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(circle, target=0.8, metric=Euclidean(), guards=[bent])
     angles = np.arctan2(path.y[:, 0], path.lam)
     assert np.abs(np.diff(angles)).max() <= np.radians(10.0) * (1.0 + 1e-9)
     refused = [str(r) for step in path.steps for r in step.rejected]
@@ -33,8 +34,9 @@ def test_a_step_that_is_refused_is_tried_again_shorter():
 
 
 def test_the_tracer_stops_where_a_guard_always_refuses():
-    path = trace(Cusp(), guards=[lambda arc: "y is above 1" if arc.b.y[0] > 1.0 else ""])
-    assert path.status is Status.STEP_TOO_SMALL
+    path = path_of(
+        Cusp(), guards=[lambda arc: "y is above 1" if arc.b.y[0] > 1.0 else ""], status=Status.STEP_TOO_SMALL
+    )
     assert "a guard refuses the arc: y is above 1" in path.message
     assert 0.9 < path.endpoint.y[0] <= 1.0
 

@@ -7,7 +7,7 @@ from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status, from_funct
 from continuation.archive import resume
 from continuation.budget import Budget
 
-from ...util import by_preset, every_preset
+from ...util import by_preset, every_preset, path_of
 
 
 def cubic(noise):
@@ -42,8 +42,7 @@ def test_both_folds_are_found_in_at_most_twice_the_steps(preset, level):
 
 @every_preset
 def test_noise_that_grows_along_the_path_is_noticed_and_said(preset):
-    path = trace(drawn(growing), preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(drawn(growing), preset=preset)
     assert [point.lam for point in path.turning_points] == pytest.approx([2.0, -2.0], abs=1e-3)
     assert "The residual is noisy: the tolerance was raised to" in path.message
     assert len(path) < 150  # it took 1,300 steps, and found one fold
@@ -56,8 +55,7 @@ def test_noise_that_a_start_at_zero_does_not_show_is_measured_ahead_of_it():
         y, lam = float(y[0]), float(lam)
         return np.array([y - lam + 1e-6 * lam * np.sin(1e11 * (y + lam)) if lam >= -1e-4 else np.nan])
 
-    path = trace(from_functions(residual, start=([0.0], 0.0), target=1.0))
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(from_functions(residual, start=([0.0], 0.0), target=1.0))
     assert "The residual is noisy" in path.message
     assert len(path) <= 12
 
@@ -67,8 +65,7 @@ def test_noise_that_a_start_at_zero_does_not_show_is_measured_ahead_of_it():
 def test_a_trace_that_is_resumed_knows_the_noise_and_the_steps_of_differences(tmp_path, level, steps):
     """The same noise at the same point: the points that follow are those of the trace that was not cut, bit for bit."""
     homotopy = cubic(lambda t, lam: level(t) * np.sin(1e11 * (np.array([1.0, 2.0, 3.0]) * t + lam)))
-    whole = trace(homotopy)
-    assert whole.status is Status.REACHED_TARGET
+    whole = path_of(homotopy)
     trace(homotopy, archive=tmp_path / "part.h5", budget=Budget(steps=steps))
     again = resume(tmp_path / "part.h5", homotopy, budget=Budget())
     np.testing.assert_array_equal(again.u, whole.u)

@@ -23,7 +23,7 @@ from continuation.metric import Euclidean
 from continuation.rejection import Rejection
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth
 
-from ...util import by_preset, every_preset
+from ...util import by_preset, every_preset, path_of
 from .util import CONTROLLERS, CORRECTORS, METRICS, PREDICTORS, Watcher
 
 # Every pair of parts occurs: the numbers of predictor, corrector and controller make a Latin square.
@@ -35,8 +35,14 @@ PAIRWISE = [
 
 @pytest.mark.parametrize(("predictor", "corrector", "controller"), PAIRWISE, ids=repr)
 def test_every_pair_of_parts_goes_round_the_circle(predictor, corrector, controller):
-    path = trace(Circle(), predictor=predictor, corrector=corrector, controller=controller, metric=Euclidean())
-    assert path.status is Status.CLOSED
+    path = path_of(
+        Circle(),
+        predictor=predictor,
+        corrector=corrector,
+        controller=controller,
+        metric=Euclidean(),
+        status=Status.CLOSED,
+    )
     assert [round(event.lam, 9) for event in path.turning_points] == [1.0, -1.0]
     assert path.endpoint.arclength == pytest.approx(2.0 * pi, rel=1e-4)
     assert np.abs(np.hypot(path.y[:, 0], path.lam) - 1.0).max() <= 1e-7
@@ -44,16 +50,14 @@ def test_every_pair_of_parts_goes_round_the_circle(predictor, corrector, control
 
 @pytest.mark.parametrize(("predictor", "controller"), [(p, c) for p, _, c in PAIRWISE], ids=repr)
 def test_the_natural_parameter_follows_what_does_not_turn(predictor, controller):
-    path = trace(Cusp(-0.7), predictor=predictor, corrector=NaturalParameter(), controller=controller)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(Cusp(-0.7), predictor=predictor, corrector=NaturalParameter(), controller=controller)
     np.testing.assert_allclose(path.endpoint.y, 1.0 + np.sqrt(0.7), rtol=1e-8)
 
 
 @pytest.mark.parametrize("metric", METRICS, ids=repr)
 @every_preset
 def test_every_metric_follows_the_cusp(metric, preset):
-    path = trace(Cusp(), metric=metric, preset=preset)
-    assert path.status is Status.REACHED_TARGET
+    path = path_of(Cusp(), metric=metric, preset=preset)
     np.testing.assert_allclose(path.endpoint.u, (2.0, 6.0), rtol=1e-8)
     assert len(path.turning_points) == 2
 

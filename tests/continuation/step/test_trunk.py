@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 import continuation
 
-from ...util import every_preset
+from ...util import every_preset, path_of
 from ..util import scalar
 
 PRESETS = continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE
@@ -64,8 +64,7 @@ class Trunk:
 
 def passed(trunk, preset, **options):
     """The path, of which every branch point is as expected."""
-    path = continuation.trace(trunk, preset=preset, **options)
-    assert path.status is continuation.Status.REACHED_TARGET
+    path = path_of(trunk, preset=preset, **options)
     assert [event.name for event in path.events] == [name for _, name in trunk.expected]
     np.testing.assert_allclose([event.lam for event in path.events], [lam for lam, _ in trunk.expected], rtol=1e-6)
     return path
@@ -116,8 +115,7 @@ def test_any_number_of_ranks_may_be_lost(ranks, preset):
         start=(np.zeros(ranks), -1.0),
         target=1.0,
     )
-    path = continuation.trace(pitchforks, preset=preset)
-    assert path.status is continuation.Status.REACHED_TARGET
+    path = path_of(pitchforks, preset=preset)
     assert [event.name for event in path.events] == ["multiple branch point"]
 
 
@@ -142,8 +140,7 @@ class Beam:
 
 
 def test_a_fine_mesh_loses_no_rank_by_its_condition():
-    path = continuation.trace(Beam(150))
-    assert path.status is continuation.Status.REACHED_TARGET
+    path = path_of(Beam(150))
     assert [event.name for event in path.events] == ["branch point"]
     assert path.events[0].lam == pytest.approx(1.0, rel=1e-7)  # round-off of K is 1e-9
 

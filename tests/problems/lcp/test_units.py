@@ -15,7 +15,7 @@ from problems.lcp.proof.compensated import row_terms
 from problems.lcp.proof.farkas import FloatFarkas, infeasibility
 
 from ...util import benchmark
-from .util import powers
+from .util import powers, solution_of
 
 campaign = benchmark("claims.py")
 
@@ -133,8 +133,7 @@ def test_rows_beyond_the_range_of_floats_are_as_exact_as_others(seed, sparse):
     ],
 )
 def test_solutions_that_no_float_holds_are_not_claimed(A, q):
-    solution = lcp.solve(lcp.LCP(A, q))
-    assert solution.outcome is Outcome.NOT_FOUND
+    solution = solution_of(lcp.LCP(A, q), outcome=Outcome.NOT_FOUND)
     assert "no float holds it" in solution.message or "misses the tolerance, by 1.0e+00" in solution.message
     assert solution.relative_residual >= 1.0
 
@@ -158,8 +157,7 @@ def test_entries_too_far_apart_for_floats_are_decided_exactly():
 @pytest.mark.parametrize("factor", [1e-300, 1e300])
 def test_homotopies_by_name_survive_extreme_data(name, factor):
     A, q = np.array([[2.0, 1.0], [-1.0, 2.0]]), np.array([-1.0, -3.0])
-    solution = lcp.solve(lcp.LCP(factor * A, factor * q), name)
-    assert solution.outcome is Outcome.SOLVED
+    solution = solution_of(lcp.LCP(factor * A, factor * q), name)
     np.testing.assert_allclose(solution.x, [0.0, 1.5], atol=1e-12)
 
 

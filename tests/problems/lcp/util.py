@@ -2,12 +2,20 @@
 
 import numpy as np
 
-from problems.lcp import MixedLCP
+from problems import lcp
+from problems.lcp import MixedLCP, Outcome
 
 
 def powers(rng, n, largest):
     """Units that are powers of two."""
     return 2.0 ** rng.integers(-largest, largest + 1, n)
+
+
+def solution_of(problem, *homotopy, outcome=Outcome.SOLVED, **options):
+    """A problem's solution, whose outcome is as expected."""
+    solution = lcp.solve(problem, *homotopy, **options)
+    assert solution.outcome is outcome, solution.message
+    return solution
 
 
 def x_at_end(problem, path):

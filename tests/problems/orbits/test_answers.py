@@ -87,8 +87,7 @@ def test_the_first_period_doubling_of_roessler():
     assert [step.observed["unstable"] for step in path.steps] == [0.0] * (len(path) - 1) + [1.0]
     twice = orbit.doubled(doubling)
     assert twice.period == pytest.approx(2.0 * 5.7698, abs=1e-3)
-    branch = continuation.trace(twice, start=twice.leaving, events=[TargetValue(3.0)])
-    assert branch.success
+    branch = path_of(twice, start=twice.leaving, events=[TargetValue(3.0)], status=continuation.Status.STOPPED_AT_EVENT)
     assert branch.steps[-1].observed["unstable"] == 0.0
 
 

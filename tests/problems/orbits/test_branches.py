@@ -8,6 +8,8 @@ from continuation import Curve, Family, Kind
 from problems.orbits import PeriodicOrbit
 from problems.orbits.models import brusselator, normal_form
 
+from ...util import path_of
+
 
 def test_a_branch_leads_from_the_hopf_point_of_a_path_of_equilibria():
     equilibria = continuation.from_functions(brusselator, start=([1.0, 1.5], 1.5), target=2.5)
@@ -27,7 +29,6 @@ def test_the_curve_of_folds_of_cycles():
     fold = continuation.trace(orbit, start=orbit.leaving, events=[continuation.TurningPoint(terminal=1)]).events[-1]
     finer = PeriodicOrbit.from_orbit(orbit, fold, intervals=24)
     assert finer.parameter == pytest.approx(-0.25, abs=1e-12)
-    curve = continuation.trace(Curve(Family(orbit, "second"), fold), target=0.5)
-    assert curve.success
+    curve = path_of(Curve(Family(orbit, "second"), fold), target=0.5)
     for step in curve.steps:
         assert step.u[-2] == pytest.approx(-0.25 * step.lam**2, abs=1e-11)

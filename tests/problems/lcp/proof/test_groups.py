@@ -14,6 +14,8 @@ from problems.lcp.reference.branching import Branching
 from problems.lcp.reference.enumeration import exhaust
 from problems.lcp.strategies import lcps
 
+from ..util import solution_of
+
 
 def feasible_without_solution(n, seed):
     """Normal entries; q such that x = 1 is feasible, and no face holds a solution."""
@@ -40,8 +42,7 @@ def test_they_agree_with_enumeration_and_hold_exactly(problem):
 @pytest.mark.parametrize("n", [13, 20])
 def test_feasible_problems_without_a_solution_are_decided(n):
     problem = feasible_without_solution(n, n)
-    found = lcp.solve(problem)
-    assert found.outcome is Outcome.UNSOLVABLE
+    found = solution_of(problem, outcome=Outcome.UNSOLVABLE)
     assert (found.farkas, found.paths) == (None, ())
     assert "in groups" in found.proof
     assert found.exhaustion.faces == 2**n > len(found.exhaustion.groups) > 1
@@ -52,8 +53,7 @@ def test_in_other_units_they_hold_for_the_data_as_given():
     problem = feasible_without_solution(14, 3)
     rows, columns = 2.0 ** np.random.default_rng(5).integers(-30, 31, (2, 14))
     scaled = lcp.LCP(rows[:, None] * problem.A * columns, rows * problem.q)
-    found = lcp.solve(scaled)
-    assert found.outcome is Outcome.UNSOLVABLE
+    found = solution_of(scaled, outcome=Outcome.UNSOLVABLE)
     assert found.exhaustion.groups.holds(scaled)
     assert not found.exhaustion.groups.holds(lcp.LCP(np.eye(14), -np.ones(14)))
 

@@ -1,8 +1,5 @@
 """What is tried before a search, and before more than one singular face: what it saves, and that nothing is lost."""
 
-import sys
-from collections import Counter
-
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -14,6 +11,9 @@ from problems.lcp.search import exclusion
 from problems.lcp.search.active_sets import SETTLED
 from problems.lcp.search.pivots import Pivots
 from problems.scenes.planar import free_motion, time_step
+
+from ....util import benchmark
+from ..util import solution_of
 
 SINGULAR = LCP(np.kron(np.eye(2), [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5, 2.0]]), -np.ones(6))
 """Two contacts where one is enough, twice."""
@@ -34,8 +34,7 @@ def made(monkeypatch):
 
 def test_a_first_active_set_that_is_right_is_all(made):
     """No search is made."""
-    found = lcp.solve(LCP([[4.0, 1.0, 0.0], [0.0, 3.0, 1.0], [1.0, 0.0, 2.0]], [-1.0, -2.0, 5.0]))
-    assert found.outcome is lcp.Outcome.SOLVED
+    found = solution_of(LCP([[4.0, 1.0, 0.0], [0.0, 3.0, 1.0], [1.0, 0.0, 2.0]], [-1.0, -2.0, 5.0]))
     assert found.message.endswith(SETTLED)
     assert (made, found.counts.factorizations, found.best) == ([], 1, -1)
     assert lcp.certify(found.problem, found.x).relative_residual == found.relative_residual
@@ -63,13 +62,7 @@ def test_the_first_active_set_costs_few_calls():
     M = r.normal(size=(8, 8))
     A, q = M @ M.T + 8.0 * np.eye(8), np.where(np.arange(8) < 3, -1.0, 2.0)
     assert SETTLED in lcp.solve(LCP(A, q)).message
-    calls = Counter()
-    sys.setprofile(lambda frame, event, argument: calls.update([event]))
-    try:
-        lcp.solve(LCP(A, q))
-    finally:
-        sys.setprofile(None)
-    assert calls["call"] + calls["c_call"] <= 300
+    assert benchmark("step.py").calls(lambda: lcp.solve(LCP(A, q))) <= 300
 
 
 def test_a_tiny_problem_without_solution_costs_no_search(monkeypatch):
@@ -79,8 +72,7 @@ def test_a_tiny_problem_without_solution_costs_no_search(monkeypatch):
     infeasible = LCP([[0.0, 1.0], [-1.0, 0.0]], [-1.0, -1.0])
     feasible = LCP([[1.0, 1.0], [1.0, -1.0]], [-1.0, -2.0])
     for problem in (infeasible, feasible, LCP(2.0**400 * feasible.A, 2.0**400 * feasible.q)):
-        found = lcp.solve(problem)
-        assert found.outcome is lcp.Outcome.UNSOLVABLE
+        found = solution_of(problem, outcome=lcp.Outcome.UNSOLVABLE)
         assert found.problem is problem
         assert (found.exhaustion.faces, found.exhaustion.solvable) == (4, False)
         assert found.farkas.holds(infeasible) if problem is infeasible else found.farkas is None

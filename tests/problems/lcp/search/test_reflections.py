@@ -10,6 +10,8 @@ from problems.lcp import LCP, MixedLCP
 from problems.lcp.data.problem import BETWEEN, LOWER, UPPER
 from problems.lcp.search.reflections import RUNS_AT_ONCE, Sets
 
+from ..util import solution_of
+
 
 def planted(n, seed, bounds=False):
     """Gaussian with a solution, half of it at a bound."""
@@ -77,8 +79,7 @@ def test_bounds_far_from_zero_are_those_of_the_sets():
 def test_planted_problems_are_solved_before_any_path(n, bounds):
     for seed in range(5):
         problem = planted(n, seed, bounds)
-        found = lcp.solve(problem, restarts=0)
-        assert found.outcome is lcp.Outcome.SOLVED
+        found = solution_of(problem, restarts=0)
         assert not found.paths
         assert lcp.certify(problem, found.x).solves(1e-10)
 

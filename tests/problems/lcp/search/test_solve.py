@@ -12,6 +12,7 @@ from problems import lcp
 from problems.lcp.data.scaling import balanced
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
+from ..util import solution_of
 from .test_at_once import SINGULAR
 
 Outcome = lcp.Outcome
@@ -22,8 +23,7 @@ PD = lcp.LCP([[4.0, -1.0, 0.5], [1.0, 3.0, -1.0], [0.0, 1.0, 2.0]], [-1.0, 1.0, 
 @pytest.mark.parametrize("name", ["kkt", "auto"])
 @pytest.mark.parametrize("finish", [True, False])
 def test_the_ten_examples_are_solved(example, name, finish):
-    solution = lcp.solve(example.problem, name, x0=example.x0, finish=finish, preset=continuation.SERIES)
-    assert solution.outcome is Outcome.SOLVED
+    solution = solution_of(example.problem, name, x0=example.x0, finish=finish, preset=continuation.SERIES)
     assert solution.relative_residual <= 1e-14
     off = min(np.abs(solution.x - np.array(x, float)).max() for x in example.solutions)
     assert off <= 1e-12 * (1 + solution.x.max())
@@ -45,8 +45,7 @@ def test_the_series_follows_the_paths_of_the_examples_with_few_factorisations():
 @pytest.mark.parametrize("case", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_the_counterexamples_end_stationary_and_say_so(case):
     for restarts, said in ((0, "No restarts"), (4, "Restarts from random starts: 4")):
-        solution = lcp.solve(case.problem, "kkt", x0=case.x0, restarts=restarts)
-        assert solution.outcome is Outcome.STATIONARY
+        solution = solution_of(case.problem, "kkt", x0=case.x0, restarts=restarts, outcome=Outcome.STATIONARY)
         assert solution.message.startswith(f"{Outcome.STATIONARY} ")
         assert said in solution.message
         assert (len(solution.paths), solution.proof) == (1 + restarts, "")
@@ -55,8 +54,7 @@ def test_the_counterexamples_end_stationary_and_say_so(case):
 
 @pytest.mark.parametrize("case", COUNTEREXAMPLES, ids=lambda c: c.matrix_class)
 def test_a_feasible_problem_without_solution_is_called_unsolvable_where_all_faces_were_tried(case):
-    decided = lcp.solve(case.problem)
-    assert decided.outcome is Outcome.UNSOLVABLE
+    decided = solution_of(case.problem, outcome=Outcome.UNSOLVABLE)
     assert decided.farkas is None
     assert decided.exhaustion.faces == 2**case.problem.n
     assert decided.message.startswith(f"{Outcome.UNSOLVABLE} {decided.proof}")
@@ -68,8 +66,9 @@ def test_collapse_is_infeasible_to_working_precision():
     problem = lcp.LCP(np.eye(3) - np.ones((3, 3)) / 3, np.array([0.3, 0.6, 1.2]) - 2.2 / 3)
     assert lcp.farkas(problem) is None
     for units in (np.ones(3), np.array([1e-6, 3.0, 1e5])):
-        solution = lcp.solve(lcp.LCP(units[:, None] * problem.A, units * problem.q))
-        assert solution.outcome is Outcome.INFEASIBLE_TO_PRECISION
+        solution = solution_of(
+            lcp.LCP(units[:, None] * problem.A, units * problem.q), outcome=Outcome.INFEASIBLE_TO_PRECISION
+        )
         assert not solution.paths
         y = solution.float_farkas.y * units
         np.testing.assert_allclose(y / y.max(), np.ones(3), rtol=1e-12)
@@ -80,8 +79,7 @@ def test_collapse_is_infeasible_to_working_precision():
 
 
 def test_nonnegative_q_is_solved_by_zero_without_work():
-    solution = lcp.solve(lcp.LCP(-np.ones((3, 3)), [0.0, 1.0, 2.0]))
-    assert solution.outcome is Outcome.SOLVED
+    solution = solution_of(lcp.LCP(-np.ones((3, 3)), [0.0, 1.0, 2.0]))
     assert (solution.x == 0.0).all()
     assert (solution.counts.factorizations, solution.paths) == (0, ())
     # There is a path to draw all the same: one point.
@@ -90,8 +88,7 @@ def test_nonnegative_q_is_solved_by_zero_without_work():
 
 
 def test_without_finish_the_path_is_the_pure_homotopy():
-    solution = lcp.solve(PD, finish=False)
-    assert solution.outcome is Outcome.SOLVED
+    solution = solution_of(PD, finish=False)
     homotopy = lcp.WangHomotopy(balanced(PD).problem)
     pure = continuation.trace(homotopy, preset=continuation.FAST)
     np.testing.assert_array_equal(solution.path.u, pure.u)
@@ -107,8 +104,9 @@ def test_the_outcome_is_judged_by_the_certificate_alone(monkeypatch):
 def test_the_budget_ends_the_search():
     problem = COUNTEREXAMPLES[0].problem
     # The pure path alone: with the finish all faces of so small a problem are tried first.
-    solution = lcp.solve(problem, budget=continuation.Budget(steps=5), restarts=50, finish=False)
-    assert solution.outcome is Outcome.NOT_FOUND
+    solution = solution_of(
+        problem, budget=continuation.Budget(steps=5), restarts=50, finish=False, outcome=Outcome.NOT_FOUND
+    )
     assert "budget" in solution.message.lower()
     assert len(solution.paths) == 1
     # Lemke's method solves it, after the first active sets.
@@ -122,8 +120,7 @@ def test_exponential_families_cost_the_same_at_every_size(family):
     for n in (25, 50, 100):
         lower = np.eye(n) + np.tril(np.full((n, n), 2.0), -1)
         problem = lcp.LCP(lower.T if family == "murty" else lower @ lower.T, -np.ones(n))
-        solution = lcp.solve(problem)
-        assert solution.outcome is Outcome.SOLVED
+        solution = solution_of(problem)
         work.append(solution.counts.factorizations)
     assert max(work) <= 100
 
@@ -131,8 +128,7 @@ def test_exponential_families_cost_the_same_at_every_size(family):
 def test_a_large_sparse_problem_is_never_made_dense():
     n = 20_000
     A = sp.diags_array([-1.0, 2.2, -1.0], offsets=[-1, 0, 1], shape=(n, n), dtype=float)
-    solution = lcp.solve(lcp.LCP(A, np.random.default_rng(0).standard_normal(n)))
-    assert solution.outcome is Outcome.SOLVED
+    solution = solution_of(lcp.LCP(A, np.random.default_rng(0).standard_normal(n)))
     assert solution.relative_residual <= 1e-14
 
 
@@ -140,8 +136,7 @@ def test_an_obstacle_that_is_touched_by_zeros_alone_needs_no_path():
     """Of an M-matrix with q = 0 on half of a line; the first step of an American put is such a problem."""
     n = 199
     A = sp.diags_array([-0.42, 1.84, -0.41], offsets=[-1, 0, 1], shape=(n, n), format="csr")
-    found = lcp.solve(lcp.LCP(A, np.where(np.arange(n) < n // 2, 1e-3, 0.0) - 0.5 * (np.arange(n) == n // 2)))
-    assert found.outcome is Outcome.SOLVED
+    found = solution_of(lcp.LCP(A, np.where(np.arange(n) < n // 2, 1e-3, 0.0) - 0.5 * (np.arange(n) == n // 2)))
     assert not found.paths
 
 
