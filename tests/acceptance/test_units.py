@@ -71,7 +71,7 @@ def first_weights(homotopy):
 def test_the_first_scales_do_not_depend_on_where_zero_is(name, offset):
     """They solve an equation, to 1e-4; by a search that ended nearby they differed by up to a hundredth."""
     here = run.Rescaled(run.PROBLEMS[name].make())
-    there = evolve(here, c=np.full(here.c.size, offset))
+    there = evolve(here, c=offset)
     np.testing.assert_allclose(first_weights(there), first_weights(here), rtol=1e-4)
 
 
