@@ -99,7 +99,7 @@ def initial_extent(
     except EvaluationError:
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
-    blur = np.maximum(_largest([_held(v, given, z) for z in samples]), np.spacing(np.abs(u)))
+    blur = np.max([np.spacing(np.abs(u)), *(np.abs(_held(v, given, z)) for z in samples)], axis=0)
     if near:
         # Round-off of the tangent moves the point ahead.
         blur = np.maximum(blur, ahead * np.abs(given - v))
@@ -225,11 +225,6 @@ def _held(v: Array, given: Array, z: Array) -> Array:
     parts = np.sort(z[moving] / v[moving])
     beside: Array = z - min(parts[(parts.size - 1) // 2], parts[parts.size // 2], key=abs) * given
     return beside
-
-
-def _largest(samples: list[Array]) -> Array:
-    found: Array = np.abs(samples).max(axis=0)
-    return found
 
 
 def _nonlinearity(

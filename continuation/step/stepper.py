@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from attrs import frozen
 
-from continuation.arrays import Array, dot, finite
+from continuation.arrays import SIX_DIGITS, Array, dot, finite
 from continuation.correctors import Correction, Corrector
 from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner
@@ -22,9 +22,6 @@ Methods, 1997)."""
 
 SHORTENINGS, SHORTEST = 60, 0.1
 """Limit of cuts at a boundary, below any least step, and least factor of one."""
-
-TANGENT = 1e-6
-"""Accuracy of the tangent, in tolerances."""
 
 
 @frozen(eq=False)
@@ -90,7 +87,8 @@ class Stepper:
         evaluator, weights, anchor = self.solver.evaluator, point.weights, correction.anchor
         try:
             if anchor is not None:
-                accuracy = max(REFINED, TANGENT * self.solver.tolerance.relative)
+                # The tangent is needed to six digits of the tolerance.
+                accuracy = max(REFINED, SIX_DIGITS * self.solver.tolerance.relative)
                 arrival = relinearize(evaluator, correction.u, weights, anchor, border, True, accuracy)
             else:
                 arrival = linearize(evaluator, correction.u, weights, border)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from attrs import Factory, field, frozen
+from attrs import field, frozen
 
 from continuation.arrays import Array
 from continuation.citation.bibliography import ALLGOWER_GEORG
 from problems.bibliography import KELLER_1978
 from problems.nonlinear import start_checks
-from problems.nonlinear.start_checks import Derivative, Function, Jacobian, value_at
+from problems.nonlinear.start_checks import Derivative, Function, Jacobian
 from problems.options import quiet
 
 
@@ -37,9 +37,7 @@ class NewtonHomotopy:
     F: Function
     a: Array = field(converter=start_checks.start_vector)
     slope: Jacobian | None = None
-    value: Array = field(
-        init=False, repr=False, default=Factory(lambda self: value_at(self.F, self.a, self.slope), takes_self=True)
-    )
+    value: Array = field(init=False, repr=False, default=start_checks.VALUE)
     """F(a), shape (n,)."""
     problem_class: ClassVar[str] = "nonlinear equations F(x) = 0"
     target: ClassVar[float | None] = 0.0

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from attrs import Factory
 
 from continuation.arguments.checks import expect
 from continuation.arrays import Array, Matrix
@@ -39,6 +40,10 @@ def value_at(F: Function, a: Array, jacobian: Jacobian | None) -> Array:
         expect(shape is not None, "jacobian(a)", "a matrix with a shape", shape, TypeError)
         expect(shape == (a.size, a.size), "jacobian(a)", f"shape {(a.size, a.size)}", shape)
     return finite_vector("F(a)", value)
+
+
+VALUE: Any = Factory(lambda self: value_at(self.F, self.a, self.slope), takes_self=True)
+"""The default of a field: F(a), after the checks."""
 
 
 def start(self: Any) -> tuple[Array, float]:

@@ -137,6 +137,9 @@ def from_qp(
     P = _matrix("P", P, n)
     expect(P.shape[0] == n, "P", f"shape {(n, n)}, one row a number of c", P.shape)
     expect(abs(P - P.T).sum() == 0.0, "P", "a symmetric matrix, such as (P + P') / 2", P)
+    if not sp.issparse(P):
+        # Then the problem of a program with bounds alone shares it.
+        P.flags.writeable = False
     expect(
         (G is None) == (h is None and rows_lower is None),
         "G", "rows and one side of them, h or rows_lower, or none of these", G,

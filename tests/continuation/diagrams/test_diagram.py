@@ -6,7 +6,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from continuation import Budget, Kind, Stability, diagram, from_functions
+from continuation import Automatic, Budget, Kind, Stability, diagram, from_functions
 from continuation.archive import open_archive
 from continuation.status import Status
 from problems.bifurcation import FreudensteinRoth, Pitchfork
@@ -175,3 +175,11 @@ def test_a_branch_goes_through_the_point_that_it_was_found_at():
 def test_a_box_that_holds_no_start_is_refused(options, message):
     with pytest.raises((TypeError, ValueError), match=message):
         diagram(Forks((1.0,)), **options)
+
+
+def test_no_scale_of_a_branch_is_below_a_tenth_of_the_scale_before():
+    before = Automatic().of_extent(np.array([1.0, 1.0, 2.0]))
+    short = np.array([1e-4, 3.0, 1e-4])
+    on_branch = Automatic(before=before).of_extent(short)
+    np.testing.assert_allclose(on_branch, np.minimum(Automatic().of_extent(short), 100.0 * before))
+    assert (on_branch < Automatic().of_extent(short)).tolist() == [True, False, True]
