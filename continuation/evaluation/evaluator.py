@@ -106,7 +106,7 @@ class Evaluator:
         self.bindings += 1
         self.followed = True  # by jets
         self._checked = False
-        self._kept: dict[bytes, tuple[Matrix, Array]] = {}
+        self._kept: dict[bytes, tuple[Matrix, Array, Callable[[Array], Array]]] = {}
         self._bordered = homotopy.bordered if offers(homotopy, SupportsBordered) else None
         self._differential = homotopy.differential if offers(homotopy, SupportsDifferential) else None
         self._derivative: Callable[[Array, float], tuple[Matrix, Array]] | None = None
@@ -228,10 +228,10 @@ class Evaluator:
             return lambda v: np.asarray(apply(y, lam, v), dtype=float)
         if self._bordered is not None:
             return None
-        H_y, column = self._evaluated(u)
-        return lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
+        return self._evaluated(u)[2]
 
-    def _evaluated(self, u: Array) -> tuple[Matrix, Array]:
+    def _evaluated(self, u: Array) -> tuple[Matrix, Array, Callable[[Array], Array]]:
+        """H_y, H_lam, and the map v -> H' v."""
         place = u.tobytes()
         if place in self._kept:
             return self._kept[place]
@@ -248,8 +248,13 @@ class Evaluator:
             self._checked = True
         while len(self._kept) >= DERIVATIVES_KEPT:
             del self._kept[next(iter(self._kept))]
-        H_y = answer[0].copy() if isinstance(answer[0], np.ndarray) else answer[0]
-        self._kept[place] = H_y, np.array(answer[1], dtype=float)
+        # Plug-ins may reuse their arrays.
+        H_y, column = answer[0], np.array(answer[1], dtype=float)
+        if isinstance(H_y, np.ndarray):
+            whole = np.concatenate((H_y, column[:, None]), axis=1)
+            self._kept[place] = whole[:, :-1], column, whole.dot
+        else:
+            self._kept[place] = H_y, column, lambda v: np.asarray(H_y @ v[:-1] + column * v[-1], dtype=float)
         return self._kept[place]
 
     def matrix(self, u: Array) -> Matrix:
@@ -268,7 +273,7 @@ class Evaluator:
                     system = self._bordered(u[:-1], float(u[-1]), border)
                 instance_with("bordered", system, ("solve", "sign"), "a factorisation")
             else:
-                H_y, column = self._evaluated(u)
+                H_y, column, _ = self._evaluated(u)
                 dense = isinstance(H_y, np.ndarray)
                 if not (dense or finite(column)):
                     raise NotFiniteError("the derivative is not finite")

@@ -52,8 +52,7 @@ def changes(
     it are not found. `accuracy`: relative.
     """
     values, vectors, _ = _eigenvalues(a, apply, border, most, least, start, accuracy, passed=True)
-    order = np.argsort(values)
-    return values[order].tolist(), _unit(vectors[:, order], np.sqrt(a.weights))
+    return values.tolist(), _unit(vectors, np.sqrt(a.weights)) if values.size else vectors
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
@@ -146,6 +145,9 @@ def _eigenvalues(
     # If one has crossed, two others may have crossed and become a pair.
     crossed = passed and any(values[j].real > 1.0 for j in real)
     wanted = real + [j for j in pairs if crossed and values[j].real > 1.0]
+    if not wanted:
+        return np.zeros(0), np.zeros((a.u.size, 0)), scale
+    wanted.sort(key=lambda j: values[j].real)
     return np.array([values[j].real for j in wanted]), Q[: k + 1].T @ vectors[:, wanted] / scale[:, None], scale
 
 

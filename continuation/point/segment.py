@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Protocol
+from functools import lru_cache
+from typing import Any, Protocol
 
 import numpy as np
 from attrs import frozen
@@ -34,8 +35,15 @@ CUBIC = len(_QUARTERS)
 """Samples of a cubic; a series has more."""
 
 _POWERS = np.arange(1.0, 6.0)
-_SAMPLED = np.array(_QUARTERS)[:, None] ** _POWERS, _POWERS * np.array(_QUARTERS)[:, None] ** (_POWERS - 1.0)
-"""Powers of t, first to fifth, at the quarters, and their derivatives."""
+
+
+def _powers(t: Any) -> tuple[Array, Array]:
+    """Powers of t, first to fifth, and their derivatives."""
+    return t**_POWERS, _POWERS * t ** (_POWERS - 1.0)
+
+
+_SAMPLED = _powers(np.array(_QUARTERS)[:, None])
+_powers_at = lru_cache(maxsize=16)(_powers)
 
 
 @frozen(eq=False)
@@ -55,13 +63,13 @@ class PolynomialSegment:
 
     def at(self, t: float) -> Array:
         """The point at t."""
-        point: Array = self.begin + t ** _POWERS[: len(self.coefficients)] @ self.coefficients
+        point: Array = _powers_at(t)[0][: len(self.coefficients)].dot(self.coefficients)
+        point += self.begin
         return point
 
     def derivative(self, t: float) -> Array:
         """Derivative at t."""
-        powers = _POWERS[: len(self.coefficients)]
-        slope: Array = (powers * t ** (powers - 1.0)) @ self.coefficients
+        slope: Array = _powers_at(t)[1][: len(self.coefficients)].dot(self.coefficients)
         return slope
 
     def sampled(self) -> tuple[Sequence[Array], Sequence[Array]]:
