@@ -12,6 +12,7 @@ from attrs import evolve, frozen
 from continuation.arrays import EPS, ROOT_OF_ROUND_OFF, SIX_DIGITS, Array
 from continuation.citation.bibliography import GRIEWANK_WALTHER, SQUIRE_TRAPP
 from continuation.evaluation.pattern import generic
+from continuation.numbers.derivatives import derivatives_along
 
 Residual = Callable[..., Any]
 """``residual(y, lam) -> (N,)``."""
@@ -24,14 +25,13 @@ AGREEMENT = float(np.sqrt(SIX_DIGITS))
 class Exact:
     """Products to round-off.
 
-    `function` maps residual, u and directions (k, N + 1) to (N, k). `entire`: all of H', if faster. `agreement`:
-    tolerance of a check, relative to terms. `scale`, `even`: see `ByDifferences`.
+    `function` maps residual, u and directions (k, N + 1) to (N, k). `agreement`: tolerance of a check, relative to
+    terms. `scale`, `even`: see `ByDifferences`.
     """
 
     name: str
     function: Callable[[Residual, Array, Array], Array]
     references: tuple[str, ...] = ()
-    entire: Callable[[Residual, Array], Array] | None = None
     agreement: float = ROOT_OF_ROUND_OFF
     even: ClassVar[float] = 1.0
 
@@ -45,23 +45,11 @@ class Exact:
 
     def whole(self, residual: Residual, u: Array) -> Array:
         """H'(u)."""
-        return self(residual, u, np.eye(u.size)) if self.entire is None else self.entire(residual, u)
+        return self(residual, u, np.eye(u.size))
 
 
 def _by_jets(residual: Residual, u: Array, directions: Array) -> Array:
-    from continuation import jets
-
-    def along(s: Any) -> Any:
-        at = u + s @ directions
-        return residual(at[:-1], at[-1])
-
-    return jets.jacobian(along, np.zeros(len(directions)))
-
-
-def _all_by_jets(residual: Residual, u: Array) -> Array:
-    from continuation import jets
-
-    return jets.jacobian(lambda at: residual(at[:-1], at[-1]), u)
+    return derivatives_along(lambda at: residual(at[:-1], at[-1]), u, directions)
 
 
 def _by_complex_step(residual: Residual, u: Array, directions: Array) -> Array:
@@ -69,7 +57,7 @@ def _by_complex_step(residual: Residual, u: Array, directions: Array) -> Array:
     return np.stack([np.asarray(residual(at[:-1], at[-1])).imag * 1e200 for at in moved], axis=1)
 
 
-BY_JETS = Exact("jets", _by_jets, (GRIEWANK_WALTHER,), _all_by_jets)
+BY_JETS = Exact("jets", _by_jets, (GRIEWANK_WALTHER,))
 """Truncated Taylor arithmetic."""
 
 BY_COMPLEX_STEP = Exact("complex step", _by_complex_step, (SQUIRE_TRAPP,))

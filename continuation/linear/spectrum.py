@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -11,7 +12,7 @@ from scipy.linalg import eigvals, eigvalsh
 from scipy.linalg.lapack import dpotrf
 from scipy.sparse import csc_array, eye_array, issparse
 
-from continuation.arrays import EPS, SIX_DIGITS, Array, Matrix, generic_vector
+from continuation.arrays import EPS, ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, Matrix, generic_vector
 from continuation.linear.banded import Banded
 from continuation.linear.dense import factor_lu
 from continuation.linear.refine import BACKWARD_ERROR, Factored
@@ -31,7 +32,8 @@ SHIFT = 0.517
 """Fraction of the bound on real parts; no round number, which could be an eigenvalue."""
 
 NEARER = 0.1
-"""Factor of the next bound, and shift, that is tried: a tenth of the shift takes a third of Arnoldi's steps."""
+"""Factor of the next shift that is tried: a tenth takes a third of Arnoldi's steps. A bound of that share of the largest
+diagonal entry is near enough."""
 
 DIMENSIONS, TESTS_IN_ALL = 40, 6
 """Largest Krylov dimension per wanted eigenvalue, and one more; eigenvalues are tested at each growth of it by a sixth:
@@ -134,14 +136,20 @@ def bounds(matrix: Matrix) -> tuple[float, float]:
 
 
 def nearer(matrix: Matrix, bound: float, least: float) -> float:
-    """A smaller bound of real parts, as long as Cholesky's method shows that it bounds the symmetric part.
+    """The smallest bound of real parts above `least`, up to a factor of two, that Cholesky's method shows for the
+    symmetric part, by bisection of the exponent.
 
     Gershgorin's, of differences of fourth order, is a million times too large.
     """
     symmetric = 0.5 * (matrix + _transposed(matrix))
-    while NEARER * bound > least and _is_above(NEARER * bound, symmetric):
-        bound *= NEARER
-    return bound
+    shown, power = 0, max(math.ceil(math.log2(bound / least)), 1) if least > 0.0 else 1
+    while power - shown > 1:
+        middle = (shown + power) // 2
+        if _is_above(bound * 0.5**middle, symmetric):
+            shown = middle
+        else:
+            power = middle
+    return bound * 0.5**shown
 
 
 def _transposed(matrix: Matrix) -> Matrix:
@@ -160,8 +168,8 @@ def _nearest(matrix: Matrix, k: int) -> Spectrum:
     n = matrix.shape[0]
     real, imaginary = bounds(matrix)
     largest = float(np.abs(matrix.diagonal()).max())
-    # A singular matrix needs a shift; if all eigenvalues are stable, one comparable to frequencies.
-    least = SHIFT * SIX_DIGITS * largest
+    # A singular matrix needs a shift above round-off; if all eigenvalues are stable, one comparable to frequencies.
+    least = SHIFT * ROOT_OF_ROUND_OFF * largest
     if real > NEARER * largest:
         real = nearer(matrix, real, least)
     shift = max(SHIFT * max(real, 0.1 * imaginary), least)

@@ -85,7 +85,12 @@ def jacobian(f: Callable[[Any], Any], x: Any) -> Array:
     x = _numbers(x, "x")
     if x.ndim != 1 or len(x) == 0:
         raise ValueError(f"x has shape {x.shape}; expected (m,) with m >= 1")
-    return _columns(f, len(x), lambda directions: wrap(np.vstack([x, directions]), GRADIENT))
+    return derivatives_along(f, x, np.eye(len(x)))
+
+
+def derivatives_along(f: Callable[[Any], Any], x: Array, directions: Array) -> Array:
+    """f'(x) times each of k directions, (k, m), as columns: shape (*shape of f, k)."""
+    return _columns(f, directions, lambda some: wrap(np.concatenate((x[None], some)), GRADIENT))
 
 
 def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
@@ -111,14 +116,12 @@ def second_derivatives(f: Callable[[Any], Any], x: Any, v: Any) -> Array:
     def line(directions: Array) -> Any:
         return wrap(np.vstack([x, directions, v, np.zeros_like(directions)]), Beside(GRADIENT))
 
-    return _columns(f, len(x), line)
+    return _columns(f, np.eye(len(x)), line)
 
 
-def _columns(f: Callable[[Any], Any], m: int, line: Callable[[Array], Any]) -> Array:
-    columns = []
-    for begin in range(0, m, BLOCK):
-        directions = np.eye(min(BLOCK, m - begin), m, begin)
-        columns.append(np.moveaxis(_image(f, line(directions))[-len(directions) :], 0, -1))
+def _columns(f: Callable[[Any], Any], directions: Array, line: Callable[[Array], Any]) -> Array:
+    blocks = [directions[k : k + BLOCK] for k in range(0, len(directions), BLOCK)]
+    columns = [np.moveaxis(_image(f, line(block))[-len(block) :], 0, -1) for block in blocks]
     return np.concatenate(columns, axis=-1)
 
 

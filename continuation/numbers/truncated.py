@@ -12,6 +12,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 from scipy.sparse import issparse
 
 from continuation.arrays import Array
+from continuation.linear.silence import without_warnings
 from continuation.numbers import ufuncs
 from continuation.numbers.algebra import Algebra, Coefficients, lengthened
 from continuation.numbers.ends import Ends, moved, sparse_product
@@ -98,13 +99,13 @@ class Truncated(NDArrayOperatorsMixin):
         out[...] = result
         return out
 
+    @without_warnings(all="ignore")
     def __array_function__(self, function: Any, types: Any, args: Any, keywords: Any) -> Any:
         name, rule = f"{function.__module__}.{function.__name__}", FUNCTIONS.get(function)
         if rule is None:
             raise self.unknown(name)
         try:
-            with np.errstate(all="ignore"):
-                return rule(*args, **keywords)
+            return rule(*args, **keywords)
         except TypeError:
             try:
                 inspect.signature(rule).bind(*args, **keywords)
@@ -164,24 +165,31 @@ class Truncated(NDArrayOperatorsMixin):
         """Numbers as coefficients."""
         return x.astype(float, copy=False)[None]
 
+    @without_warnings(all="ignore")
     def _call(self, ufunc: np.ufunc, inputs: tuple[Any, ...]) -> Any:
+        """Overflow gives inf; `series.demand` raises if no series exists."""
         if ufunc is np.matmul and any(issparse(x) for x in inputs):
             a, b = inputs
             matrix, x = (b.T, a) if isinstance(a, Truncated) else (a, b)
             if x.ndim != 1:
                 raise self.unknown(f"a sparse product with an array of {x.ndim} axes")
             return wrap(sparse_product(matrix, x.c), x.algebra)
-        operands = [x if isinstance(x, Truncated) or type(x) is float else gather(x, self.ONE) for x in inputs]
-        algebra = common([x for x in operands if isinstance(x, Truncated)])
-        stores = [x.c if isinstance(x, Truncated) else self.constant(np.asarray(x)) for x in operands]
+        operands, stores = [], []
+        for x in inputs:
+            if not isinstance(x, Truncated):
+                x = np.asarray(x) if type(x) is float else gather(x, self.ONE)
+            if isinstance(x, Truncated):
+                operands.append(x)
+                stores.append(x.c)
+            else:
+                stores.append(self.constant(x))
+        algebra = common(operands)
         if len(stores) == 2 and ufunc is not np.matmul:
-            stores = list(ufuncs.aligned(*stores))
-        # Overflow gives inf; demand() raises if no series exists.
-        with np.errstate(all="ignore"):
-            if ufunc in ufuncs.UFUNC_RULES:
-                return wrap(ufuncs.UFUNC_RULES[ufunc](algebra, *stores), algebra)
-            if ufunc in ufuncs.DECIDED:
-                return ufuncs.DECIDED[ufunc](*stores)
+            stores[:] = ufuncs.aligned(*stores)
+        if ufunc in ufuncs.UFUNC_RULES:
+            return wrap(ufuncs.UFUNC_RULES[ufunc](algebra, *stores), algebra)
+        if ufunc in ufuncs.DECIDED:
+            return ufuncs.DECIDED[ufunc](*stores)
         raise self.unknown(f"numpy.{ufunc.__name__}")
 
 
@@ -215,8 +223,10 @@ def gather(x: Any, one: str = "an array of series") -> Any:
 
 def common(operands: Any) -> Algebra:
     """The algebra of all non-constant operands."""
-    first, *others = operands if len(operands) == 1 else sorted(operands, key=lambda x: len(x.c) == 1)
-    for x in others:
+    first = operands[0]
+    for x in operands[1:]:
+        if len(first.c) == 1:
+            first, x = x, first
         constant = len(x.c) == 1 or (len(x.c) == len(first.c) and x.algebra == first.algebra)
         if not constant or x.OWN != first.OWN:
             orders = f"orders {len(first.c) - 1} and {len(x.c) - 1}"

@@ -32,12 +32,10 @@ def aligned(a: Coefficients, b: Coefficients) -> tuple[Coefficients, Coefficient
     """Both with equally many axes."""
     if a.ndim == b.ndim:
         return a, b
-    own, most = own_axes(a), max(a.ndim, b.ndim)
-
-    def longer(x: Array) -> Array:
-        return x.reshape(*x.shape[:own], *(1,) * (most - x.ndim), *x.shape[own:])
-
-    return moved(longer, a), moved(longer, b)
+    if a.ndim > b.ndim:
+        return aligned(b, a)[::-1]
+    own, more = own_axes(a), (1,) * (b.ndim - a.ndim)
+    return moved(lambda x: x.reshape(x.shape[:own] + more + x.shape[own:]), a), b
 
 
 def spread(c: Coefficients, shape: tuple[int, ...]) -> Coefficients:
