@@ -94,22 +94,21 @@ def degenerate_point(
         order = max((ahead - t) / (beyond - left), 1.0)
         touching = order > SIMPLE_ORDER and lost == 1
         t, last = ahead - order * beyond, np.inf
-        place, u = t, arc.a.u
+        place = t
         while 0.0 < t < FARTHEST:
-            place = t
-            z, left = _left(lambda s: at(s, on_path(s)), place, order)
-            u = on_path(place)
-            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, u, z, partial(at, place), arc.a.approximate, arc.a.weights)):
+            z, left = _left(lambda s: at(s, on_path(s)), t, order)
+            u = on_path(t)
+            if abs(z) <= max(Z_ROUND_OFF, _blur(solver, u, z, partial(at, t), arc.a.approximate, arc.a.weights)):
                 return u, order
             if not abs(left) < MONOTONE * abs(last):
                 # M_a is nearly singular: z is round-off.
                 if abs(left) <= ROOT_OF_ROUND_OFF * t and abs(z) <= EIGENVALUE_ACCURACY:
                     return u, order
                 break
-            last, t = left, t - order * left
+            place, last, t = t, left, t - order * left
         if touching:
             # The branches are closer than u is accurate; at a double root z has half of its digits.
-            u, solve = _at_double_root(solver, u, arc.a.border)
+            u, solve = _at_double_root(solver, on_path(place), arc.a.border)
             z = at(place, u)
             if abs(z) <= max(ROOT_OF_ROUND_OFF, _blur(solver, u, z, partial(at, place), solve, arc.a.weights)):
                 return u, order
