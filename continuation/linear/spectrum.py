@@ -32,8 +32,8 @@ SHIFT = 0.517
 """Fraction of the bound on real parts; no round number, which could be an eigenvalue."""
 
 NEARER = 0.1
-"""Factor of the next shift that is tried: a tenth takes a third of Arnoldi's steps. A bound of that share of the largest
-diagonal entry is near enough."""
+"""Factor of the next shift that is tried: a tenth takes a third of Arnoldi's steps. A bound of this share of the
+diagonal's largest entry is near enough."""
 
 DIMENSIONS, TESTS_IN_ALL = 40, 6
 """Largest Krylov dimension per wanted eigenvalue, and one more; eigenvalues are tested at each growth of it by a sixth:
