@@ -25,8 +25,8 @@ TRIALS = 32
 """Trial steps, each half of the last: on the other branch the size of an unknown that stands still here is not known.
 """
 
-SAME_LINE = 1.0 - 1e-5
-"""Cosine between both extrapolated rays of one branch."""
+ONE_LINE = -0.99
+"""Largest cosine between the two rays of one branch: a point where four cross is known to 1e-4, its rays to 1e-2."""
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
@@ -54,10 +54,15 @@ def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
         If directions, not stored in files, are not found, or branches are not isolated.
     """
     if isinstance(event, LocatedEvent) and event.kind == Kind.SINGULAR_POINT:
+        back, *rays = leaving_branches(homotopy, event)
         found: list[Array] = []
-        for branch in leaving_branches(homotopy, event)[1:]:
-            if not any(abs(inner(branch.weights, branch.ray, other)) > SAME_LINE for other in found):
-                found.append(branch.ray)
+        while rays:
+            # The rays of one branch err by as much as the point, in opposite directions.
+            one = rays.pop(0)
+            other = min(rays if found else [back], key=lambda ray: inner(one.weights, one.ray, ray.ray), default=one)
+            paired = inner(one.weights, one.ray, other.ray) < ONE_LINE
+            found.append(one.ray - other.ray if paired else one.ray)
+            rays = [ray for ray in rays if not (paired and ray is other)]
         return tuple(ray / np.linalg.norm(ray) for ray in found)
     _, known, *others = crossing_rays(homotopy, event)
     return known / np.linalg.norm(known), others[0] / np.linalg.norm(others[0])
