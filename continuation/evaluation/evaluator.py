@@ -157,7 +157,7 @@ class Evaluator:
         self.counts.residuals += 1
         try:
             # Plug-ins may reuse their arrays.
-            r: Array = np.asarray(self.homotopy.residual(u[:-1], float(u[-1])), float).copy()
+            r: Array = np.array(self.homotopy.residual(u[:-1], u.item(-1)), float)
         except (ArithmeticError, ValueError) as error:
             raise unevaluated("residual", error) from error
         if not isfinite(dasum(r)):

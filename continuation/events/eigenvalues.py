@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg.lapack import dgeev
 
-from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot
+from continuation.arrays import ROOT_OF_ROUND_OFF, SIX_DIGITS, Array, dot, largest
 from continuation.evaluation.errors import EvaluationError
 from continuation.point.linearization import Linearization
 
@@ -105,7 +105,7 @@ def _eigenvalues(
     for k in range(n):
         q = Q[k] / scale
         x = Q[k] - scale * a.approximate(apply(q), dot(border, q))
-        if k == 0:
+        if k == 0 and math.sqrt(x.size) * largest(x) > 1.0:
             balance = 1.0 / np.maximum(1.0, math.sqrt(x.size) * np.abs(x))
             first = balance * Q[0]
             balance /= math.sqrt(dot(first, first))
