@@ -196,7 +196,7 @@ def _columns(more: frozenset[str], table: str) -> tuple[Column, ...]:
 
 
 def check_names(prefix: str, names: Iterable[str]) -> None:
-    """Raise `ValueError` unless names have 1 to 100 printable bytes, no slash."""
+    """Raise a `ValueError` about `prefix` unless names have 1 to 100 printable bytes, no slash."""
     for name in names:
         plain = isinstance(name, str) and name.isprintable() and "/" not in name and name == name.strip()
         # netCDF allows 256 bytes, prefix included.

@@ -232,7 +232,7 @@ def _spread(
 
 
 def _again(executor: Executor, task: Task, timeout: float | None) -> Result:
-    """Trace once more, for a pool in a process of its own."""
+    """Trace once more, in a new process if `executor` is a process pool."""
     pool = isinstance(executor, ProcessPoolExecutor)
     own = ProcessPoolExecutor(1, mp_context=getattr(executor, "_mp_context", None)) if pool else executor
     try:

@@ -198,7 +198,7 @@ def _interrupted(paths: Mapping[str, Any], which: Any, why: str) -> None:
 
 
 def _salvaged(contents: Contents, sound: Mapping[str, Any]) -> list[Share]:
-    """An empty share, then each path's sound rows before its first damaged one."""
+    """An empty share, then one for each path: its sound rows before its first damaged one."""
     layout, points, paths = contents.layout, contents.table("point"), contents.table("path")
     some = partial(Share, layout, contents.event_names, points=points, origin=contents)
     runs, shares = dict(_runs(points, sound["point"])), [some(layout.filled({}, "path", 0), rows=slice(0, 0))]
@@ -233,7 +233,7 @@ _SETTINGS = "predictor", "corrector", "controller", "metric", "target"
 
 
 def describe(archive: Archive) -> str:
-    """The page.
+    """The text that ``continuation inspect`` prints.
 
     Parameters
     ----------

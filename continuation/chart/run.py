@@ -102,7 +102,7 @@ def tables(results: Results) -> dict[str, Table]:
 def report(study: Study, results: Results, folder: File) -> list[File]:
     """Write ``NAME.json`` and ``NAME-1.png``, ... to an existing folder; return the files.
 
-    They replace existing ones; figures need matplotlib.
+    They replace existing ones; without matplotlib figures are left out.
     """
     files = [write(results, folder / f"{study.name}.json")]
     for k, figure in enumerate(study.figures, start=1):

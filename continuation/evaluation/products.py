@@ -119,7 +119,7 @@ def _trials(residual: Residual, u: Array, w: Array, rows: Array | float = 0.0) -
 
 
 def difference_along(residual: Residual, u: Array, w: Array) -> tuple[Array, float]:
-    """The central difference along w with the least mean change, and its step.
+    """The central difference along w that changes least as the step shrinks, and this step.
 
     `u`, `w` of shape (N + 1,).
     """

@@ -78,7 +78,7 @@ class Reduced:
         return cls(evaluator, u, extent, sizes, kernel, left, Bordered.of(matrix, left, kernel.T))
 
     def bend(self, heading: Array, radius: float) -> float:
-        """Size of g on the sphere off the path, relative to its change as far along the path."""
+        """|g(b)| over |g(a + b) - g(b)|, a along the path and b across it, of size `radius`."""
         along = self.kernel.T @ heading
         along = radius * along / np.linalg.norm(along)
         off = np.linalg.qr(along[:, None], mode="complete")[0][:, 1:].sum(axis=1) * radius

@@ -99,7 +99,7 @@ def scan_events(
 def first_terminal(
     events: tuple[Event, ...], counted: tuple[int, ...], found: list[tuple[int, Linearization]]
 ) -> tuple[int | None, tuple[int, ...]]:
-    """Index of the event that stops the path, or None, and counts up to it."""
+    """Index in `found` of the event that stops the path, or None, and counts up to it."""
     counts = list(counted)
     for k, (i, _) in enumerate(found):
         counts[i] += 1

@@ -82,7 +82,7 @@ def scales(evaluator: Evaluator, extent: Array, points: tuple[Array, ...]) -> tu
     """Extents, larger where an unknown's column of H' is small, and sizes of rows: largest entries at some points.
 
     An unknown that stands still has no extent of its own; in too small a unit its column looks like a lost rank. The
-    parameter's column vanishes where all unknowns stand still.
+    parameter keeps its extent: its column vanishes where all unknowns stand still.
     """
     entries = abs(full_derivative(evaluator, points[0]))
     for u in points[1:]:

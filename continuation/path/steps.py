@@ -107,6 +107,7 @@ class LocatedEvent(Located):
     monitor : float
         The monitor's value.
     orientation : int
+        As in `Step`.
     step : int
         The event lies between steps step - 1 and step.
     ends_step : bool

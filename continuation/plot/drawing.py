@@ -98,8 +98,9 @@ def known_along(path: Drawn, number: Any, wanted: Array) -> Array:
 
 
 def stable_parts(path: Drawn) -> StableParts:
-    """The stable parts, or None if stability is not stored. It changes at the first event between two points, else half
-    way.
+    """`StableParts`, or None if stability is not stored.
+
+    Stability changes at the first event between two points, those of `Kind.EVENT` last, else half way.
     """
     if not path.steps or UNSTABLE not in path.steps[0].observed:
         return None

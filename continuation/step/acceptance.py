@@ -61,7 +61,7 @@ class Examiner:
     ) -> Accepted | Rejected:
         """Return the arc to the arrival, or why it is rejected.
 
-        `prediction`: the path between the points, if accurate. `landed`: whether the attempt aimed at the target.
+        `prediction`: if a series, the path between the points. `landed`: whether the attempt aimed at the target.
         """
         arrival, events, orientation = attempt.point, self.settings.events, state.orientation
         arc = arc_between(point, arrival, prediction)

@@ -132,7 +132,7 @@ class _Looks:
     along: Array = field(default=Factory(lambda looks: np.zeros_like(looks.arc.a.u), takes_self=True), init=False)
 
     def look(self, u: Array, t: float, accuracy: float = EIGENVALUE_ACCURACY) -> list[float]:
-        """Changes 1 - z above TOLD or below LOWEST, for eigenvalues z at the point u, near the arc's parameter t."""
+        """Eigenvalues of I - M_a^-1 M(t) above TOLD or below LOWEST, ascending; `u`: the point near parameter t."""
         apply, size = _differential(self.solver, u), u.size
         if apply is None:
             return []

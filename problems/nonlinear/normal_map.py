@@ -161,7 +161,7 @@ class NormalMap:
         return np.concatenate([y[below] - lower, upper - y[above]])
 
     def piece(self, signs: Array) -> NormalPiece:
-        """The smooth map on which unknowns of negative switch are at bounds."""
+        """The smooth map with unknowns at the bounds whose `switches` have negative `signs`."""
         below, above = np.isfinite(self.lower), np.isfinite(self.upper)
         m = int(below.sum())
         low, high = np.zeros(self.lower.shape, dtype=bool), np.zeros(self.lower.shape, dtype=bool)

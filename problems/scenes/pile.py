@@ -1,4 +1,4 @@
-"""A falling pile of boxes, in time steps."""
+"""A falling pile of boxes."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def Pile(
         m and kg, each box.
     friction : float
     speed : float
-        m/s, lowest box.
+        m/s, sideways, lowest box.
     gravity, step : float
         m/s^2, s.
 

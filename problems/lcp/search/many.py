@@ -143,10 +143,10 @@ def _answers(A: Array, q: Array, *, tolerance: float, budget: Budget | None) -> 
 
 
 def block_pivots(A: Array, q: Array) -> tuple[NDArray[np.bool_], NDArray[np.intp]]:
-    """Active sets of many problems, and for which problems they are right but for rounding.
+    """Active sets (w_i = 0) of many problems, and indices of those that are right but for rounding.
 
-    All wrong indices change, or the last one alone if their number has not fallen four times, so that P-matrices need
-    finitely many changes; 2 n + 10 are made.
+    If four changes leave no fewer wrong indices, only the last one changes, else all, so that P-matrices need finitely
+    many changes; at most 2 n + 10 are made.
     """
     k, n = q.shape
     active, left, right = q < 0.0, np.arange(k), np.zeros(k, dtype=bool)
