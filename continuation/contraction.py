@@ -60,7 +60,7 @@ class Iteration:
         return self.size if self.count < 3 else self.size * min(self.worst / max(1.0 - self.worst, HALVING), 1.0)
 
     def add(self, step: Array, size: float) -> bool:
-        """Add an increment; False, without adding, if its ratio is too large."""
+        """Add an increment to `x`; False, without adding, if the ratio of sizes is too large."""
         rule, k, before = self.rule, self.count, self.size
         self.count = k + 1
         if k:

@@ -220,14 +220,14 @@ class Followed:
 def follow(
     homotopy: Any, *, every: int = 5, archive: str | PathLike[str] | None = None, **options: Unpack[Options]
 ) -> Followed:
-    """Trace a path and renew the homotopy, for example its mesh, every few steps.
+    """Trace a path and renew the homotopy, for example its mesh, every few steps and at its `renewed_at` events.
 
     Closed curves, event occurrences and budgets other than steps concern one part only.
 
     Parameters
     ----------
     homotopy : Homotopy
-        With `renewed` and `renewed_at`.
+        A `SupportsRenewal`.
     every : int, default 5
         Steps between renewals.
     archive : path, default None

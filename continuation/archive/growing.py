@@ -217,9 +217,9 @@ def check_homotopy(homotopy: Any, u: Array, stored: float) -> None:
 
 @define(eq=False)
 class Growing:
-    """An archive of finished paths, safe from kills.
+    """An archive that grows by finished paths, safe from kills.
 
-    `keep`: steps in memory, "all" or "ends".
+    `keep`: steps of returned paths in memory, "all" or "ends".
     """
 
     file: File

@@ -106,9 +106,11 @@ class Results:
     Attributes
     ----------
     study, title, ladder : str
+        `ladder`: name of what is varied.
     errors : mapping of str to str
         Axis labels, most important first.
     work : sequence of str
+        From `WORK`.
     rows : sequence of Row
     provenance : mapping of str to str
         Versions, machine, threads.
@@ -129,7 +131,7 @@ class Results:
 
     @property
     def families(self) -> list[str]:
-        """Names of the families, in order of appearance."""
+        """Names in order of appearance."""
         return list(dict.fromkeys(row.family for row in self.rows))
 
     @property

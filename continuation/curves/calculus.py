@@ -30,8 +30,9 @@ Member = Callable[[Any], Any]
 class Calculus:
     """How a family is differentiated, decided at a point.
 
-    `derivative`: of members without one. `jets`: whether jets give second derivatives and those by mu. `u0`: (y, lam,
-    mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for H, H' v.
+    `derivative`: gives (H_y, H_lam) of members without one, or None. `jets`: whether jets give second derivatives and
+    those by mu. `u0`: point (y, lam, mu). `extent`: scales of (y, lam). `reach`, `bend`: relative steps in mu for
+    differences of H, H' v.
     """
 
     family: Member

@@ -77,8 +77,8 @@ class CountedSystem:
 class Evaluator:
     """Counted access to one homotopy; `TypeError` or `ValueError` if it is wrong.
 
-    `methods`: BibTeX of derivatives that replace missing ones. `noise`: of H beyond the round-off of u, shape (N,), or
-    None.
+    `methods`: BibTeX of derivatives that replace missing ones. `noise`: of H where above the effect of round-off in u,
+    else 0, shape (N,); None if all are 0.
     """
 
     def __init__(self, homotopy: Any, counts: Counts) -> None:

@@ -54,7 +54,7 @@ def zero_between(function: Callable[[float], float], low: float, high: float, **
 
 
 def may_vanish(function: Function, arc: Arc, ga: float, gb: float) -> bool:
-    """Whether a function changes sign on an arc, or falls below half of both end values."""
+    """Whether samples of a function, or parabolas through them, change sign or fall below half of both end values."""
     if gb == 0.0 or ga * gb < 0.0:
         return True
     sign = math.copysign(1.0, ga)

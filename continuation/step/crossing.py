@@ -80,10 +80,10 @@ class Crossed:
 def on_arc(
     solver: PathSolver, arc: Arc, attempt: Arrival, prediction: Prediction, flipped: bool, ends: bool, index: int
 ) -> Crossed | Rejected | None:
-    """Return the branch point on an arc, None, or a rejection.
+    """Return the branch point on an arc, None without one, or a rejection.
 
-    `attempt`: end of this or a longer arc. `flipped`: the determinant changes sign. `ends`: the path ends with the arc.
-    `index`: the step's; varies start vectors.
+    `attempt`: the step; the arc may be only its first part. `flipped`: the determinant changes sign. `ends`: the path
+    ends with the arc. `index`: the step's; varies start vectors.
     """
     looks = _Looks(solver, arc, attempt, prediction, flipped, ends, index)
     seen = looks.first()

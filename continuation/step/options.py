@@ -78,7 +78,7 @@ class Options(PartOptions, total=False):
         Replaces the homotopy's start: point ``(y, lam)`` and direction; a guess of y at a parameter value; or a path to
         continue.
     finish : callable, default None
-        Maps ``(y, lam)`` to the end y or None, after each step; replaces the homotopy's. Not archived.
+        Called with ``(y, lam)`` after each step; gives y at the target, or None; replaces the homotopy's. Not archived.
     max_step : float, default None
         Largest step in arclength: bends narrower than half of it may be missed (docs/guarantee.md).
     box : mapping or None, default "homotopy"

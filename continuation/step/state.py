@@ -13,12 +13,12 @@ from continuation.predictors import Knot
 class State:
     """State at an accepted point; with the settings it determines the rest of the path.
 
-    `history`: the predictor's knots, the current point last. `weights`: the metric. `anchor`: point and border of the
-    factorisation. `orientation`: determinant sign of the tangent. `h`: the next step length. `monitors`, `occurrences`:
+    `history`: the predictor's knots, the current point last. `weights`: the metric. `anchor`: point and border that
+    repeat the factorisation. `orientation`: see `Linearization`. `h`: the next step length. `monitors`, `occurrences`:
     values and counts of the events; a monitor that vanishes at the point is 0. `origin`: the start, with metric
     `origin_weights`. `divergence_monitor`: see `continuation.ends.divergence`. `last_failed_landing`,
-    `last_failed_endgame`: parameter values, or inf. `index`: of the last step. `signs`: of the switches ahead. `noise`:
-    of each equation, shape (N,), or (0,). `tolerance`: raised for noise, else 0.
+    `last_failed_endgame`: lam at the attempt, or inf. `index`: of the last step. `signs`: of the switches on the piece
+    ahead. `noise`: of each equation, shape (N,), or (0,). `tolerance`: relative, raised for noise.
     """
 
     history: tuple[Knot, ...]

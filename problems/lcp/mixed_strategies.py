@@ -59,7 +59,7 @@ def programs(draw: Draw, n: Order = ORDERS, convex: bool = True) -> Program:
     ----------
     n : int or strategy of int
     convex : bool
-        Whether P is positive semidefinite.
+        True: P is positive semidefinite; False: any symmetric P.
     """
     A = draw(matrices("PSD" if convex else "any", n))
     P, size = A + A.T, len(A)

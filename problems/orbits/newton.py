@@ -19,7 +19,7 @@ component at rest may have the size of its round-off."""
 
 
 def newton(homotopy: Any, u: Array, weights: Array, border: Array) -> Array:
-    """The point (y, p) of an orbit near u with the same product with `border`.
+    """The orbit's point (y, p) near u with the same product with `border`; `weights` measure increments.
 
     Raises `ArithmeticError` without convergence.
     """

@@ -80,8 +80,8 @@ def iterate(
 ) -> Iterated:
     """Correct an active set until it is right or given up.
 
-    `near` selects among a face's points. With a shift LCP(q - shift near, A + shift I) is solved. `judge` recognises a
-    solution; sets in `tried` are skipped.
+    A singular face gives a point near the last x, at first `near`. With a shift LCP(q - shift near, A + shift I) is
+    solved. `judge` recognises a solution. Sets in `tried` end the iteration, which adds its own.
     """
     x = np.zeros(faces.problem.n) if near is None else near
     centre = None if shift is None else x

@@ -70,18 +70,18 @@ class Certificate:
 
     @cached_property
     def exact(self) -> bool:
-        """Whether an exact solution exists on the face of x or an adjacent one.
-
-        References
-        ----------
-        Rump, Acta Numerica 19, 2010, section 10.
-        """
+        """Whether the face of x, or one of two that differ where x_i and w_i are nearly 0, holds an exact solution."""
         return self.clearly_exact or certify_exactly(self.problem, self.x).solves
 
     @property
     @_quiet
     def clearly_exact(self) -> bool:
-        """Whether floats with error bounds prove a solution near x on its face."""
+        """Whether floats with error bounds prove a solution near x on its face.
+
+        References
+        ----------
+        Rump, Acta Numerica 19, 2010, section 10.
+        """
         problem, x, w, terms = self.problem, self.x, self.w, self._terms
         if terms is None or terms.scaled or least(room := self._room) < 0.0:
             return False

@@ -43,7 +43,7 @@ def answer(search: Search, message: str) -> Solution:
 
 
 def _outcome(search: Search, end: Candidate | None) -> Outcome:
-    """The most certain outcome; NOT_FOUND if an exact solution exists whose floats are not `confirmed`."""
+    """The most certain outcome; NOT_FOUND if exact arithmetic finds a solution, but `end` is not `confirmed`."""
     proof, exhaustion = search.proof, search.exhaustion
     if end is not None and search.confirmed(end.certificate):
         undecided = search.problem.n <= LARGEST_DECIDED and (exhaustion is None or not exhaustion.solvable)

@@ -93,7 +93,7 @@ class Search:
 
     @property
     def exhausted(self) -> str:
-        """The budget's limit that is reached, or ""; its seconds are CPU seconds."""
+        """The reached limit of the budget as text, or ""; seconds are CPU seconds."""
         spent = self.traced.factorizations + (0 if self.finish is None else self.finish.counts.factorizations)
         counts = Counts(accepted=self.traced.accepted, factorizations=spent)
         return self.budget.spent(counts, time.process_time() - self._processor)
