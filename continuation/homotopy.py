@@ -192,7 +192,7 @@ class SupportsMetric(Protocol):
 
 @runtime_checkable
 class SupportsExtents(Protocol):
-    """Positive sizes of unknowns and parameter, shape (N + 1,), for those that stay zero."""
+    """Positive sizes of unknowns and parameter, shape (N + 1,), which scale those that stand still at the start."""
 
     extents: Array
 
@@ -289,7 +289,7 @@ class Watcher(Event, Protocol):
         ...
 
     def accounts_for(self, arc: Any, found: Sequence[tuple[Any, Any]]) -> bool:
-        """Return whether the events found, as pairs of kind and point, explain the arc.
+        """Return whether the events found explain the watched quantity's change; if not, a shorter arc is tried.
 
         Parameters
         ----------

@@ -59,12 +59,12 @@ class Judged(Protocol):
 
 
 class Engine(Protocol):
-    """A source of bounds.
+    """A source of bounds of Krawczyk's operator.
 
     Attributes
     ----------
     exact : bool
-        Whether bounds hold for all radii.
+        Whether bounds hold above the given radii too.
     """
 
     exact: ClassVar[bool]

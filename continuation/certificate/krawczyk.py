@@ -97,7 +97,7 @@ class ByIntervals:
         return Bounded(self, slabs, misfit, Y, off, radius, E)
 
     def _inverse(self, slabs: Slabs, box: Ends) -> tuple[Array, Array]:
-        """Y, about the inverse of G' over a box, and a bound of |I - Y G'|."""
+        """Y, about the inverse of G' over a box, and bounds of the entries of |I - Y G'|."""
         m = box.shape[1]
         lo, hi = derivatives(self.image(with_gradient(box.lo, box.hi)), m)
         middle = 0.5 * lo + 0.5 * hi

@@ -82,7 +82,7 @@ class Problem:
 
 
 def order_of(subject: Any) -> int:
-    """The number of unknowns, if the subject is a homotopy or tells it."""
+    """The number of unknowns of a homotopy, else the subject's `n`, or 0."""
     return len(subject.start()[0]) if offers(subject, Homotopy) else int(getattr(subject, "n", 0))
 
 

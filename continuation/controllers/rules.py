@@ -26,7 +26,7 @@ def _of_series(bounds: Any) -> Bounds:
 
 @frozen
 class Fixed:
-    """A constant step, `bounds.initial` (0.1); a failure shortens it once, by `ratio`.
+    """A constant step, `bounds.initial` (0.1); each failure multiplies only the current step by `ratio`.
 
     With ``max_angle=inf`` it is the backtracking of Dutta, Das and Jana (Steps 2 and 3), which may jump between paths.
     """

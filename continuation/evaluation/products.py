@@ -25,8 +25,8 @@ AGREEMENT = float(np.sqrt(SIX_DIGITS))
 class Exact:
     """Products to round-off.
 
-    `function` maps residual, u and directions (k, N + 1) to (N, k). `agreement`: tolerance of a check, relative to
-    terms. `scale`, `even`: see `ByDifferences`.
+    `function` maps residual, u and directions (k, N + 1) to (N, k). `agreement`: tolerance when a sparsity pattern is
+    checked, relative to terms. `scale`, `even`: see `ByDifferences`.
     """
 
     name: str

@@ -66,7 +66,7 @@ class Tangent:
 class Hermite:
     """The cubic through the last two points and tangents, in sigma = border . (u - point.u): order 3.
 
-    It is Euler's at the start, and after a right-angle turn.
+    It is Euler's at the start, and after a turn of 90 degrees or more.
     """
 
     memory: int = field(default=2, init=False)

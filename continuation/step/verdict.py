@@ -22,8 +22,8 @@ from continuation.step.state import State
 class Verdict:
     """How a path ended.
 
-    `particulars` follow the status' sentence. `limit`: a singular end. `rejected`: the last failures. `error`: bound at
-    a regular end.
+    `particulars` follow the status' sentence. `limit`: a singular end. `rejected`: the last failures. `error`: bound of
+    a component's error at a regular end.
     """
 
     status: Status

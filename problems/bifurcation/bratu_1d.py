@@ -26,7 +26,7 @@ class Bratu1D:
     n : int
         Interior points.
     target : float or None
-        End of the path; None: max u = 8.
+        lam at the path's end; None: max u = 8.
 
     References
     ----------

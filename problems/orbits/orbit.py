@@ -36,15 +36,15 @@ class PeriodicOrbit:
 
     X is a continuous piecewise polynomial of degree m, collocated at m Gauss points of N intervals. Its error is of
     order m + 1 in their lengths, 2 m at mesh points and in the period (de Boor and Swartz, SIAM J. Numer. Anal. 10,
-    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, which equations pin. The phase condition is int
-    <X, X_ref'> = 0 with the given orbit X_ref.
+    1973). Unknowns are X at N m nodes, T, and N - 1 inner mesh points, which equations fix. The phase condition is int
+    <X, X_ref'> = 0, X_ref the given orbit.
 
     Parameters
     ----------
     f : callable
         ``f(x, p)`` or ``f(x, p, second)``, n numbers. It may accept x of shape (n, k).
     states : array_like, shape (N m, n)
-        Approximate orbit.
+        Approximate orbit at each interval's Chebyshev-Lobatto points but the last.
     period : float
     parameter : float
     mesh : int or array_like, shape (N + 1,)

@@ -106,7 +106,7 @@ class Finish:
         return False
 
     def judged(self, face: Face, x: Array, w: Array) -> tuple[Array, Array, bool]:
-        """The face's point, clipped, perhaps corrected; and whether it is a solution."""
+        """A solution (x, w, True) by clipping or correcting a face's point; else the last (x, w, False), unclipped."""
         if not self._plausible(face.state, x, w):
             return x, w, False
         best = certified(self.problem, self.problem.clipped(x))

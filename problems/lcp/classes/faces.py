@@ -28,7 +28,7 @@ class FacePoint:
 
 
 def face_point(entries: Sequence[IntRow], q: Sequence[int], support: Indices) -> FacePoint | None:
-    """A point x, w >= 0, w = entries x + q, with x zero outside `support` and w zero on it; None if there is none."""
+    """A point x >= 0, w = entries x + q >= 0, x zero outside `support` and w zero on it; None if there is none."""
     state = [-1] * len(q)
     for i in support:
         state[i] = 0

@@ -52,7 +52,7 @@ class Sensitivity:
     biactive : ndarray of int
         Indices at a bound with w_i = 0.
     side : ndarray, shape (n,)
-        1 at a lower bound, -1 at an upper one.
+        1 if the lower bound is nearer, else -1.
     basis : Basis
         LU of A on the moving indices.
     A : ndarray, shape (n, n)
