@@ -39,7 +39,7 @@ class Aircraft:
     elevator : float
         The source takes -0.05, -0.008, 0, 0.05 and 0.1.
     target : float or None
-        End of the path.
+        lam at the end.
 
     References
     ----------

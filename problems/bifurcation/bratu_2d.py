@@ -35,7 +35,7 @@ class Bratu2D:
     m : int
         Interior points per side.
     target : float or None
-        End of the path; None: max u = 8.
+        lam at the end; None: max u = 8.
 
     References
     ----------

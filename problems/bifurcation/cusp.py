@@ -21,7 +21,7 @@ class Cusp:
     splitting : float
         Fixed lambda: two folds if positive, none if negative.
     target : float or None
-        End of the path; default: the start's mirror image.
+        lam at the end; default: the start's mirror image.
 
     References
     ----------

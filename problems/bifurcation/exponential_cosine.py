@@ -21,7 +21,7 @@ class ExponentialCosine:
     n : int
         Unknowns. n = 2 has no turning point, n = 8 has 24.
     target : float or None
-        End of the path.
+        lam at the end.
 
     References
     ----------

@@ -25,7 +25,7 @@ class FreudensteinRoth:
     Parameters
     ----------
     target : float or None
-        End of the path.
+        lam at the end.
 
     Notes
     -----

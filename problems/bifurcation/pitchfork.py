@@ -21,7 +21,7 @@ class Pitchfork:
     imperfection : float
         eps. For 0 the path x = 0 meets x^2 = lam in a branch point. Otherwise the path keeps the sign of eps.
     target : float or None
-        End of the path.
+        lam at the end.
 
     References
     ----------
