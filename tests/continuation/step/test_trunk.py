@@ -151,3 +151,15 @@ def test_a_straight_trunk_has_the_scale_of_its_start(power):
     trunk = scalar(lambda y, lam: y * (lam**power - 2.0) - y**3, start=(0.0, 0.3), target=None)
     path = continuation.trace(trunk, budget=continuation.Budget(steps=15))
     assert [event.lam for event in path.events] == pytest.approx([2.0 ** (1.0 / power)])
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1e6])
+def test_a_branch_off_a_trunk_at_rest_is_followed_in_any_unit(unit):
+    def residual(y, lam):
+        follows, rests = y / unit
+        return np.stack([follows - lam, (1.0 - 2.0 * lam) * rests + rests**3])
+
+    homotopy = continuation.from_functions(residual, start=(np.zeros(2), 0.0), target=2.0)
+    branch = path_of(homotopy, start=continuation.switch_branch(homotopy, continuation.trace(homotopy).events[0])[0])
+    assert abs(branch.endpoint.y[1]) == pytest.approx(np.sqrt(3.0) * unit)
+    assert len(branch) < 30
