@@ -103,7 +103,9 @@ def test_unknowns_that_stand_still_have_units_of_their_own(seed, preset):
 @every_preset
 @pytest.mark.parametrize("seed", [0, 3, 8, 33, 49, 206])
 def test_eigenvalues_that_vanish_together_may_do_so_at_different_rates(seed, preset):
-    passed(Trunk(seed, bent=True), preset)
+    trunk = Trunk(seed, bent=True)
+    # 10 to 72 each; 94 to 122 of seed 49 if each place looked at has a matrix of its own.
+    assert passed(trunk, preset).counts.factorizations <= 90 * (1 + len(trunk.expected))
 
 
 @every_preset
