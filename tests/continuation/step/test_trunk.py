@@ -157,11 +157,11 @@ def test_a_straight_trunk_has_the_scale_of_its_start(power):
 
 @pytest.mark.parametrize("unit", [1e-6, 1e6])
 def test_a_branch_off_a_trunk_at_rest_is_followed_in_any_unit(unit):
-    def residual(y, lam):
-        follows, rests = y / unit
-        return np.stack([follows - lam, (1.0 - 2.0 * lam) * rests + rests**3])
-
-    homotopy = continuation.from_functions(residual, start=(np.zeros(2), 0.0), target=2.0)
+    homotopy = continuation.from_functions(
+        lambda y, lam: np.stack([y[0] / unit - lam, (1.0 - 2.0 * lam) * y[1] / unit + (y[1] / unit) ** 3]),
+        start=(np.zeros(2), 0.0),
+        target=2.0,
+    )
     branch = path_of(homotopy, start=continuation.switch_branch(homotopy, continuation.trace(homotopy).events[0])[0])
     assert abs(branch.endpoint.y[1]) == pytest.approx(np.sqrt(3.0) * unit)
     assert len(branch) < 30
