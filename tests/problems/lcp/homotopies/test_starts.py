@@ -105,8 +105,9 @@ def test_a_start_and_its_metric_move_with_bounds_and_are_mirrored_with_them(w0):
     y, moved, mirrored = (homotopy.start()[0] for homotopy in (alone, above, below))
     np.testing.assert_allclose(moved, y + np.append(low, np.zeros(4)), rtol=1e-14)
     np.testing.assert_allclose(mirrored[[0, 1, 4, 5]], -moved[[0, 1, 4, 5]], rtol=1e-14)
-    for homotopy in (above, below):
-        np.testing.assert_allclose(homotopy.metric.sizes(homotopy.start()[0]), alone.metric.sizes(y), rtol=1e-14)
+    for homotopy in (alone, above, below):
+        weights = homotopy.metric.weights(np.append(*homotopy.start()), np.ones(7), None)
+        np.testing.assert_allclose(weights, np.append(1.0 / (6.0 * y * y), 1.0), rtol=1e-13)
 
 
 def test_a_random_start_between_bounds_has_a_w_for_each_and_equal_products():
