@@ -114,5 +114,5 @@ def test_a_path_is_a_start():
     assert a * c + b * d > 0.0
     # Without a tangent, as at a singular end, the last chord tells the direction.
     whole.steps[4] = evolve(whole.steps[4], tangent=np.full(2, np.nan))
-    again = trace(Circle(), start=whole[:5], budget=Budget(steps=3))
-    assert np.dot(again.u[-1] - again.u[0], whole.u[5] - whole.u[4]) > 0.0
+    after = trace(Circle(), start=whole[:5], budget=Budget(steps=3))
+    assert np.dot(after.u[-1] - after.u[0], whole.u[5] - whole.u[4]) > 0.0

@@ -55,8 +55,9 @@ def test_components_that_are_zero_and_a_point_that_moves_on(make):
 
 def test_a_core_in_which_one_row_drowns_the_others_is_not_used():
     homotopy = lcp.KKTHomotopy(lcp.LCP([[1.0, -2.0, 0.5], [0, 0, 0], [0, 0, 0]], np.ones(3)), np.ones(3), w0=np.ones(3))
-    y = 10.0 ** np.array([0.0, 0.0, 0.0, 3.0, -4.0, -9.0, 13.0, 0.0, -4.0])
-    system, M, rhs = bordered_at(homotopy, y, 1e-7, np.random.default_rng(0))
+    system, M, rhs = bordered_at(
+        homotopy, np.array([1.0, 1.0, 1.0, 1e3, 1e-4, 1e-9, 1e13, 1.0, 1e-4]), 1e-7, np.random.default_rng(0)
+    )
     solution, _, sign = exact_solution(M, rhs)
     np.testing.assert_allclose(system.solve(rhs[:-1], rhs[-1]), solution, rtol=1e-6)
     assert system.sign == sign

@@ -43,10 +43,11 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
     np.testing.assert_array_equal(homotopy.residual(y, lam), 0.0)
 
 
-FULL_ROW = lcp.LCP(sp.eye_array(40, format="csr") + sp.csr_array(np.eye(40)[:1].T * np.ones(40)), -np.ones(40))
-
-
-@pytest.mark.parametrize("problem", [EVERY_KIND, FULL_ROW], ids=["every kind", "a full row is not squared"])
+@pytest.mark.parametrize(
+    "problem",
+    [EVERY_KIND, lcp.LCP(sp.csr_array(np.eye(40) + np.outer(np.eye(40)[0], np.ones(40))), -np.ones(40))],
+    ids=["every kind", "a full row is not squared"],
+)
 @pytest.mark.parametrize("lam", [1.0, 0.5, 0.01])
 def test_the_core_of_the_kkt_homotopy_that_is_not_corrected(lam, problem):
     homotopy = lcp.KKTHomotopy(problem, refine=False)
