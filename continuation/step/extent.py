@@ -30,9 +30,6 @@ POWERS = 0.5, 4.0
 FIRST_STEP = 0.3
 """First step, in extents, turns by a third of TURN; controllers aim at 0.4 radians."""
 
-NEAR = 1e-9
-"""Length, relative to the target's distance, at which H is linear but for rounding if a path begins at zero."""
-
 SEARCH_START = 1e-3
 """First length tried, relative to the target's distance."""
 
@@ -83,8 +80,8 @@ def initial_extent(
     standstill, unit = STANDSTILL if exactly else STILL_PIECEWISE, np.ones_like(v) if sizes is None else sizes
     if not exactly:
         v = np.where(np.abs(v) > standstill * unit * float(np.abs(v / unit).max()), v, 0.0)
-    given, near = v, 0.0 if u[:-1].any() or np.isinf(whole) else NEAR * whole
-    v = _without_round_off(evaluator, point, v, near, residual)
+    given = v
+    v = _without_round_off(evaluator, point, v, residual)
     size = np.abs(v)
     moving = size > 0.0
     length = min(whole, max(1.0, float((np.abs(u[moving]) / size[moving]).max())))
@@ -100,7 +97,7 @@ def initial_extent(
         ahead, noise = 0.0, evaluator.measure_noise(u, way, residual)
     samples = [point.approximate(signs * noise) for signs in (np.sign(generic_vector(noise.size)), 1.0)]
     blur = np.max([np.spacing(np.abs(u)), *(np.abs(_held(v, given, z)) for z in samples)], axis=0)
-    if near:
+    if ahead and np.isfinite(whole):
         # Round-off of the tangent moves the point ahead.
         blur = np.maximum(blur, ahead * np.abs(given - v))
     v = np.where((ahead or length) * size > UNCERTAIN * blur, v, 0.0)
@@ -180,10 +177,10 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
     return h
 
 
-def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: float, residual: Array) -> Array:
+def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, residual: Array) -> Array:
     """The tangent, with zeros for round-off.
 
-    A tiny component may have another unit: refinement by H' nearby tells, and by H at length h, if given.
+    A tiny component may have another unit: refinement by H' nearby tells.
     """
     small = (v != 0.0) & (np.abs(v) < SUSPECT * float(np.abs(v).max()))
     if not small.any():
@@ -199,13 +196,6 @@ def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, h: 
     if apply is None:
         return v
     replaced = np.abs(point.solve(-apply(v))) > REPLACED * np.abs(v)
-    if h:
-        # At zero, terms of H may cancel exactly.
-        try:
-            ahead = point.approximate(residual - evaluator.residual(point.u + h * np.where(small, 0.0, v))) / h
-            replaced |= np.abs(ahead - v) > REPLACED * np.abs(v)
-        except EvaluationError:
-            pass
     return np.where(small & replaced, 0.0, v)
 
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import BranchPoint, Kind, audit, trace
+from continuation import BranchPoint, Kind, audit, refine, trace
 
 from .events.util import two_graphs
+from .util import scalar
 
 
 def graph(c):
@@ -49,3 +50,8 @@ def test_one_on_which_the_path_ends(backwards):
     path = trace(CROSSED, events=[BranchPoint(terminal=1)])
     assert path.endpoint.lam == pytest.approx(0.0, abs=1e-12)
     assert audit(CROSSED, path, backwards=backwards).same
+
+
+def test_a_point_is_refined_from_afar_where_one_factorisation_does_not_serve():
+    level = trace(scalar(lambda y, lam: y - 3.0, start=(3.0, 0.0)))
+    assert refine(scalar(lambda y, lam: y**3 - 1.0), level, 0.2)[0] == pytest.approx(1.0, rel=1e-13)

@@ -118,6 +118,8 @@ class Unseen(Forks):
 def test_a_pair_of_branch_points_within_a_step_is_told_apart_by_the_count():
     homotopy = Unseen((1.0, 1.003, 2.5))
     assert trace(homotopy).events == []
+    # The sign of the determinant alone tells one from none.
+    assert [event.lam for event in trace(Unseen((1.0, 2.5))).events] == pytest.approx([1.0], abs=1e-10)
     path = trace(homotopy, observers=[Stability()])
     np.testing.assert_allclose([event.lam for event in path.events], [1.0, 1.003], rtol=0, atol=1e-10)
     assert any("change sides" in str(failed) for step in path.steps for failed in step.rejected)

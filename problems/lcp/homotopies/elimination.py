@@ -180,7 +180,4 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
             quick = reduced()
     if quick is not None and not homotopy.refine:
         return quick
-    found = CoreSystem(system.apply, border, system.sizes, quick, augmented)
-    if quick is None:
-        _ = found.robust
-    return found
+    return CoreSystem(system.apply, border, system.sizes, quick, augmented)

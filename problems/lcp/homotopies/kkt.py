@@ -185,8 +185,7 @@ class KKTHomotopy:
         rows, w = self.rows, self.problem.w(x)
         z2 = x - rows.end
         z1 = np.where(rows.sides.gaps(x) > 0.0, 0.0, np.maximum(rows.sides.pull(w), 0.0))
-        t = np.where(rows.width > z2[rows.boxed], 0.0, np.maximum(-w[rows.boxed], 0.0))
-        return np.concatenate([x, z1, z2, t])
+        return np.concatenate([x, z1, z2, np.maximum(-w[rows.boxed], 0.0)])
 
     def split(self, y: Array) -> tuple[Array, Array, Array, Array]:
         """The blocks of y, as views.

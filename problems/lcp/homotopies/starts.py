@@ -96,7 +96,7 @@ def _units(problem: MixedLCP, of_rows: Callable[[Array], Any]) -> tuple[float, f
     # Squares may overflow.
     unit = 2.0 ** (math.frexp(largest_entries(problem)[1])[1] - 1)
     A = problem.A / unit
-    row = math.sqrt(of_rows((A.multiply(A) if problem.sparse else A * A).sum(axis=1))) * unit
+    row = math.sqrt(of_rows((A * A).sum(axis=1))) * unit
     w = float(np.abs(problem.q).max()) or row or 1.0
     return w / row if 0.0 < row < np.inf else w, w
 

@@ -171,8 +171,8 @@ def _at(found: Solution, x: Array, tolerance: float, rounded: bool = False) -> S
     if not found.solved or right:
         return evolve(found, certificate=certificate)
     small = x[x > 0.0].min(initial=math.inf)
-    if not bad.any() and small > np.finfo(float).tiny:
-        off = math.nan if certificate is None else certificate.relative_residual
+    if certificate is not None and small > np.finfo(float).tiny:
+        off = certificate.relative_residual
         why = "q drowns in the rounding of x" if off <= tolerance else f"the point misses the tolerance, by {off:.1e}"
         return _not_found(found, f"In the units given {why}.", certificate)
     i = int(np.argmax(bad if bad.any() else x == small))

@@ -86,7 +86,7 @@ class Paths:
     _begun: bool = False
 
     def run(self, work: float) -> str:
-        """Trace the first paths; on the next call, up to `work` restarts."""
+        """Trace the first paths; on the next call, the restarts."""
         search = self.search
         if not self._begun:
             self._begun = True
@@ -96,7 +96,7 @@ class Paths:
             return next((said for name in self._names() if (said := self._first(name))), "")
         asked = search.asked
         name = ("kkt" if search.problem.standard else "wang") if asked.homotopy == "auto" else asked.homotopy
-        search.tried = self._restarted(name, int(min(work, asked.restarts)))
+        search.tried = self._restarted(name, asked.restarts)
         start = f"random start {search.tried} (seed {asked.seed})"
         return f"Solved by a path of the {name} homotopy from {start}." if search.solved else ""
 

@@ -44,7 +44,7 @@ def uneven(u, v):
 
 def last_kink():
     """Of the bent line, where it leaves the circle of radius 5^(1/2)."""
-    return continuation.trace(Bent(), start=(np.array([-1.6]), -0.8), box={"lam": (None, 2.0)}).kinks[-1]
+    return continuation.trace(Bent(), start=(np.array([-1.6]), -0.8), box={"lam": (-0.8, 2.0)}).kinks[-1]
 
 
 SIDE = {"box": {"lam": (-1.0, 1.0), "y": (-5.0, 5.0)}}

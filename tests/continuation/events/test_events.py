@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from continuation import EvaluationError, Kind, KinkPoint, Monitor, Status, TargetValue, TurningPoint, trace
+from continuation import (
+    EvaluationError,
+    Kind,
+    KinkPoint,
+    Monitor,
+    Status,
+    TargetValue,
+    TurningPoint,
+    from_functions,
+    trace,
+)
 from continuation.controllers import Bounds, Fixed
 from continuation.metric import Euclidean
 from problems.bifurcation import Circle, Cusp, FreudensteinRoth
@@ -206,3 +216,11 @@ def test_a_function_that_cubics_know_badly_is_asked_for_a_few_times():
 def test_what_is_no_event_is_named(make, words):
     with pytest.raises((TypeError, ValueError), match=words):
         make()
+
+
+def test_an_unknown_that_stands_still_but_for_round_off_does_not_turn():
+    A, speed = np.random.default_rng(0).normal(size=(3, 3)), np.array([1.0, 0.0, -2.0])
+    homotopy = from_functions(
+        lambda y, lam: A @ (y - 1.0 - speed * np.sin(3.0 * lam)), start=(np.ones(3), 0.0), target=2.0
+    )
+    assert trace(homotopy, events=[TurningPoint(1)]).events == []

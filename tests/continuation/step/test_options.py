@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Budget, Path, Tracer, TurningPoint, trace
 from continuation.archive import trace_many
@@ -111,3 +112,7 @@ def test_a_path_is_a_start():
     # The same ray, in the metric of another start.
     assert abs(a * d - b * c) < 1e-12
     assert a * c + b * d > 0.0
+    # Without a tangent, as at a singular end, the last chord tells the direction.
+    whole.steps[4] = evolve(whole.steps[4], tangent=np.full(2, np.nan))
+    after = trace(Circle(), start=whole[:5], budget=Budget(steps=3))
+    assert np.dot(after.u[-1] - after.u[0], whole.u[5] - whole.u[4]) > 0.0

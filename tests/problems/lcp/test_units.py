@@ -187,7 +187,7 @@ def test_a_multiplier_that_refining_brings_to_zero_proves_nothing():
 def test_a_proof_moves_between_units():
     rng = np.random.default_rng(5)
     D, E = powers(rng, 6, 60), powers(rng, 6, 60)
-    problem = lcp.LCP(D[:, None] * -np.abs(rng.standard_normal((6, 6))) * E, -D)
+    problem = lcp.LCP(D[:, None] * (np.eye(6) - 2.0 * np.roll(np.eye(6), 1, axis=1)) * E, -D)
     solution = lcp.solve(problem)
     assert "Farkas" in solution.proof
     assert solution.farkas.holds(problem)

@@ -53,6 +53,16 @@ def test_components_that_are_zero_and_a_point_that_moves_on(make):
     assert system.sign == np.linalg.slogdet(M)[0]
 
 
+def test_a_core_in_which_one_row_drowns_the_others_is_not_used():
+    homotopy = lcp.KKTHomotopy(lcp.LCP([[1.0, -2.0, 0.5], [0, 0, 0], [0, 0, 0]], np.ones(3)), np.ones(3), w0=np.ones(3))
+    system, M, rhs = bordered_at(
+        homotopy, np.array([1.0, 1.0, 1.0, 1e3, 1e-4, 1e-9, 1e13, 1.0, 1e-4]), 1e-7, np.random.default_rng(0)
+    )
+    solution, _, sign = exact_solution(M, rhs)
+    np.testing.assert_allclose(system.solve(rhs[:-1], rhs[-1]), solution, rtol=1e-6)
+    assert system.sign == sign
+
+
 def test_singular_matrix_is_said_to_be_singular():
     homotopy = lcp.WangHomotopy(lcp.LCP([[1.0]], [1.0]))
     with pytest.raises(ArithmeticError, match=r"singular|not finite"):

@@ -97,13 +97,17 @@ def test_units_follow_a_common_factor_whose_square_is_no_float(make, k):
 
 
 @pytest.mark.parametrize("w0", [[0.3, 0.02], [5.0, 40.0]])
-def test_a_start_moves_with_its_bounds_and_is_mirrored_with_them(w0):
+def test_a_start_and_its_metric_move_with_bounds_and_are_mirrored_with_them(w0):
     A, q, low, x0 = np.array([[2.0, 1.0], [-1.0, 3.0]]), np.array([-1.0, 2.0]), np.array([-3.0, 0.5]), [1.0, 2.0]
-    y, _ = lcp.KKTHomotopy(lcp.LCP(A, q + A @ low), x0, w0=w0).start()
-    moved, _ = lcp.KKTHomotopy(lcp.MixedLCP(A, q, low, np.inf), low + x0, w0=w0).start()
+    alone = lcp.KKTHomotopy(lcp.LCP(A, q + A @ low), x0, w0=w0)
+    above = lcp.KKTHomotopy(lcp.MixedLCP(A, q, low, np.inf), low + x0, w0=w0)
+    below = lcp.KKTHomotopy(lcp.MixedLCP(A, -q, -np.inf, -low), -low - x0, w0=w0)
+    y, moved, mirrored = (homotopy.start()[0] for homotopy in (alone, above, below))
     np.testing.assert_allclose(moved, y + np.append(low, np.zeros(4)), rtol=1e-14)
-    mirrored, _ = lcp.KKTHomotopy(lcp.MixedLCP(A, -q, -np.inf, -low), -low - x0, w0=w0).start()
     np.testing.assert_allclose(mirrored[[0, 1, 4, 5]], -moved[[0, 1, 4, 5]], rtol=1e-14)
+    for homotopy in (alone, above, below):
+        weights = homotopy.metric.weights(np.append(*homotopy.start()), np.ones(7), None)
+        np.testing.assert_allclose(weights, np.append(1.0 / (6.0 * y * y), 1.0), rtol=1e-13)
 
 
 def test_a_random_start_between_bounds_has_a_w_for_each_and_equal_products():

@@ -11,6 +11,7 @@ from problems.nonlinear import InteriorHomotopy, MixedComplementarity, solve_com
 
 from ....util import path_of
 from ...util import BOX, exponential, kojima_shindo
+from ..homotopies.util import bordered_at
 from .util import EVERY_KIND, stationarity
 
 INF = np.inf
@@ -42,13 +43,15 @@ def test_a_start_of_the_kkt_homotopy_for_every_kind_of_bound():
     np.testing.assert_array_equal(homotopy.residual(y, lam), 0.0)
 
 
+@pytest.mark.parametrize(
+    "problem",
+    [EVERY_KIND, lcp.LCP(sp.csr_array(np.eye(40) + np.outer(np.eye(40)[0], np.ones(40))), -np.ones(40))],
+    ids=["every kind", "a full row is not squared"],
+)
 @pytest.mark.parametrize("lam", [1.0, 0.5, 0.01])
-def test_the_core_of_the_kkt_homotopy_that_is_not_corrected(lam):
-    homotopy, rng = lcp.KKTHomotopy(EVERY_KIND, refine=False), np.random.default_rng(0)
-    y, _ = homotopy.start()
-    border, rhs = rng.standard_normal((2, y.size + 1))
-    whole = np.vstack([np.column_stack(homotopy.jacobian(y, lam)), border])
-    system = homotopy.bordered(y, lam, border)
+def test_the_core_of_the_kkt_homotopy_that_is_not_corrected(lam, problem):
+    homotopy = lcp.KKTHomotopy(problem, refine=False)
+    system, whole, rhs = bordered_at(homotopy, homotopy.start()[0], lam, np.random.default_rng(0))
     np.testing.assert_allclose(system.solve(rhs[:-1], rhs[-1]), np.linalg.solve(whole, rhs), rtol=1e-8, atol=1e-9)
     assert system.sign == np.linalg.slogdet(whole)[0]
 

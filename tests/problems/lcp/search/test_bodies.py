@@ -38,12 +38,13 @@ def test_the_kkt_path_alone_solves_bodies_in_contact(family, most):
     assert sum(one.counts.factorizations for one in found) < most * len(found)
 
 
-def test_the_nearest_point_is_returned_and_said_where_none_passes():
-    # The end of the pure path is as near as a float can be to what is asked for in vain.
+@pytest.mark.parametrize(("name", "budget"), [("kkt", Budget(steps=30)), ("auto", Budget(factorizations=1))])
+def test_the_nearest_point_is_returned_and_said_where_none_passes(name, budget):
+    # The end of the pure path, and of active sets alone, is as near as a float can be to what is asked for in vain.
     r = np.random.default_rng(1)
-    M, S = r.standard_normal((2, 20, 20))
-    problem = lcp.LCP(M @ M.T / 20 + np.eye(20) + 0.3 * (S - S.T), r.standard_normal(20))
-    found = lcp.solve(problem, "kkt", tolerance=1e-25, budget=Budget(steps=30))
+    M, S = r.standard_normal((2, 41, 41))
+    problem = lcp.LCP(M @ M.T / 41 + np.eye(41) + 0.3 * (S - S.T), r.standard_normal(41))
+    found = lcp.solve(problem, name, tolerance=1e-25, budget=budget)
     assert found.outcome is lcp.Outcome.NOT_FOUND
     assert found.relative_residual < 1e-14
     assert f"The relative residual of the best point is {found.relative_residual:.1e}." in found.message

@@ -16,10 +16,8 @@ def test_they_are_followed_on_before_any_path():
     m, rho = 100, -0.9
     X, Y = np.random.default_rng([77, 1]).standard_normal((2, m, m))
     Y = rho * X + np.sqrt(1.0 - rho * rho) * Y
-    nothing = np.zeros((m, m))
-    problem = LCP(np.block([[nothing, X - X.min() + 1.0], [(Y - Y.min() + 1.0).T, nothing]]), -np.ones(2 * m))
-    game = Game.of(problem)
-    assert game.path(0).run(10 * problem.n) is Ended.PIVOTS
+    problem = LCP(np.block([[0.0 * X, X - X.min() + 1.0], [(Y - Y.min() + 1.0).T, 0.0 * X]]), -np.ones(2 * m))
+    assert Game.of(problem).path(0).run(10 * problem.n) is Ended.PIVOTS
     found = solve(problem)
     assert found.solved
     assert not found.paths

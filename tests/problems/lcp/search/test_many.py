@@ -78,7 +78,8 @@ def test_what_the_last_digit_decides_is_left_to_solve():
     """Floats prove nothing of a face whose equations are inconsistent by one digit."""
     A = np.array([[[1.0, -1.0], [-1.0, 1.0]]] * 2)
     q = np.array([[-1.0, 1.0], [-1.0, 1.0 - np.finfo(float).eps]])
-    assert lcp.solve_many(A, q).outcome.tolist() == [Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION]
+    found = lcp.solve_many(A, q)
+    assert (found.outcome.tolist(), found.singly.tolist()) == ([Outcome.SOLVED, Outcome.SOLVED_TO_PRECISION], [0, 1])
 
 
 def test_nothing_and_no_unknowns():

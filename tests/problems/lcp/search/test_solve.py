@@ -13,7 +13,6 @@ from problems.lcp.data.scaling import balanced
 from problems.paper import COUNTEREXAMPLES, EXAMPLES
 
 from ..util import solution_of
-from .test_at_once import SINGULAR
 
 Outcome = lcp.Outcome
 PD = lcp.LCP([[4.0, -1.0, 0.5], [1.0, 3.0, -1.0], [0.0, 1.0, 2.0]], [-1.0, 1.0, -2.0])
@@ -110,7 +109,8 @@ def test_the_budget_ends_the_search():
     assert "budget" in solution.message.lower()
     assert len(solution.paths) == 1
     # Lemke's method solves it, after the first active sets.
-    solution = lcp.solve(SINGULAR, budget=continuation.Budget(factorizations=1))
+    singular = lcp.LCP(np.kron(np.eye(2), [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5, 2.0]]), -np.ones(6))
+    solution = lcp.solve(singular, budget=continuation.Budget(factorizations=1))
     assert (solution.outcome, solution.counts.factorizations) == (Outcome.NOT_FOUND, 1)
 
 
