@@ -180,4 +180,7 @@ def factor_rows(system: System, border: Array) -> BorderedSystem:
             quick = reduced()
     if quick is not None and not homotopy.refine:
         return quick
-    return CoreSystem(system.apply, border, system.sizes, quick, augmented)
+    found = CoreSystem(system.apply, border, system.sizes, quick, augmented)
+    if quick is None:
+        _ = found.robust
+    return found
