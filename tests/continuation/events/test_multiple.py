@@ -53,17 +53,20 @@ def test_the_branches_of_pitchforks_at_one_place_are_in_all_signs(ranks, structu
 BOTH = np.linalg.solve([[1.0, 0.3], [0.6, 1.0]], np.ones(2))
 EIGHT = [[a, b, 1.0] for a in (-1.0, 0.0, 1.0) for b in (-1.0, 0.0, 1.0) if a or b]
 
-FOUR_IN_A_PLANE = from_functions(
-    lambda y, lam: y * (y - lam) * (y + 0.7 * lam) * (y - 2.3 * lam), start=(np.zeros(1), -1.0), target=1.0
-)
-
 
 @pytest.mark.parametrize(
     ("homotopy", "lines", "within"),
     [
         (TRANSCRITICAL, [[1.0, 0.0, 1.0], [0.0, 1.0, 1.0], [*BOTH, 1.0]], 1e-8),
         (from_functions(lambda y, lam: y * (y**2 - lam**2), start=(np.zeros(2), -1.0), target=1.0), EIGHT, 1e-6),
-        (FOUR_IN_A_PLANE, [[1.0, 1.0], [-0.7, 1.0], [2.3, 1.0]], 1e-3),  # a point of order four is known to 1e-4
+        # A point of order four is known to 1e-4.
+        (
+            from_functions(
+                lambda y, lam: y * (y - lam) * (y + 0.7 * lam) * (y - 2.3 * lam), start=(np.zeros(1), -1.0), target=1.0
+            ),
+            [[1.0, 1.0], [-0.7, 1.0], [2.3, 1.0]],
+            1e-3,
+        ),
     ],
     ids=["three lines", "eight lines", "three in a plane"],
 )
