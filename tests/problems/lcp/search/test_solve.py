@@ -109,8 +109,10 @@ def test_the_budget_ends_the_search():
     assert "budget" in solution.message.lower()
     assert len(solution.paths) == 1
     # Lemke's method solves it, after the first active sets.
-    singular = lcp.LCP(np.kron(np.eye(2), [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5, 2.0]]), -np.ones(6))
-    solution = lcp.solve(singular, budget=continuation.Budget(factorizations=1))
+    solution = lcp.solve(
+        lcp.LCP(np.kron(np.eye(2), [[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 0.5, 2.0]]), -np.ones(6)),
+        budget=continuation.Budget(factorizations=1),
+    )
     assert (solution.outcome, solution.counts.factorizations) == (Outcome.NOT_FOUND, 1)
 
 
