@@ -200,7 +200,7 @@ class _Looks:
         arc, told = self.arc, self.told
         s = position(arc, seen.u) / arc.length
         # A branch point at the end is known to half of the digits.
-        if self.ends and 1.0 < s <= 1.0 + SIX_DIGITS:
+        if self.ends and abs(s - 1.0) <= SIX_DIGITS:
             return None
         if not self.ends and abs(s - 1.0) < NEAR_CROSSING:
             return self.rejected(Rejection.AT_CROSSING, STEP_BACK)
