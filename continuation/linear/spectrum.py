@@ -142,7 +142,8 @@ def nearer(matrix: Matrix, bound: float, least: float) -> float:
     Gershgorin's, of differences of fourth order, is a million times too large.
     """
     symmetric = 0.5 * (matrix + _transposed(matrix))
-    shown, power = 0, max(math.ceil(math.log2(bound / least)), 1) if least > 0.0 else 1
+    # The diagonal, and `least` with it, may be zero.
+    shown, power = 0, math.ceil(math.log2(bound) - math.log2(max(least, np.finfo(float).tiny)))
     while power - shown > 1:
         middle = (shown + power) // 2
         if _is_above(bound * 0.5**middle, symmetric):

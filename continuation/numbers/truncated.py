@@ -176,8 +176,7 @@ class Truncated(NDArrayOperatorsMixin):
             return wrap(sparse_product(matrix, x.c), x.algebra)
         operands, stores = [], []
         for x in inputs:
-            if not isinstance(x, Truncated):
-                x = np.asarray(x) if type(x) is float else gather(x, self.ONE)
+            x = gather(x, self.ONE)
             if isinstance(x, Truncated):
                 operands.append(x)
                 stores.append(x.c)
