@@ -1,11 +1,10 @@
 """Every Python block of the README and the documentation runs, every command exists, every page is reachable.
 
-The pages themselves are made by `make docs`, warnings as errors, which CI runs too.
+The pages themselves, and the scripts of the gallery, are run by `make docs`, warnings as errors, which CI runs too.
 """
 
 import ast
 import re
-import runpy
 import shlex
 from fnmatch import fnmatch
 from pathlib import Path
@@ -26,7 +25,6 @@ PAGES = [
     ROOT / "CONTRIBUTING.md",
     *sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts),
 ]
-SCRIPTS = sorted((ROOT / "examples" / "gallery").glob("plot_*.py"))
 _EXTRA = re.compile(r"^import (jax|sympy|casadi)$", re.MULTILINE)
 NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
 _SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
@@ -46,21 +44,6 @@ def test_the_blocks_of_a_page_run(page, tmp_path, monkeypatch):
         pytest.importorskip(extra)
     for shown in executed.run(text, tmp_path, page.name):
         assert "Traceback" not in shown.output
-
-
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
-def test_the_scripts_of_the_gallery_run(script, tmp_path, monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    monkeypatch.chdir(tmp_path)
-    for extra in _EXTRA.findall(script.read_text(encoding="utf-8")):
-        pytest.importorskip(extra)
-    from matplotlib import pyplot
-
-    runpy.run_path(str(script), run_name="__main__")
-    drawn = pyplot.get_fignums()
-    pyplot.close("all")
-    assert drawn
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)

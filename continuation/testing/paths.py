@@ -57,14 +57,13 @@ def audited(name: str, backwards: bool, subject: Subject) -> None:
 
 
 def resumed(subject: Subject) -> None:
-    """A path resumed half-way equals, bit for bit, the uninterrupted path; an archive makes the homotopy if it can."""
+    """A path resumed half-way equals, bit for bit, the uninterrupted one; an archive makes the homotopy if it can."""
     text, _ = problem_data(subject.homotopy)
     # Encoding has just loaded these modules.
     named = re.findall(r'"(?:class|function)": "([\w.]+):([\w.]+)"', text)
     trusted = [attrgetter(name)(sys.modules[module]) for module, name in named]
     given = subject.homotopy if "unstorable" in json.loads(text) else None
-    with reporting("resume", "while the whole path is traced"):
-        whole = subject.traced()
+    whole = subject.path
     half = (len(whole) - 1) // 2
     if half < 1:
         return

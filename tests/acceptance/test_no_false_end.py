@@ -310,7 +310,7 @@ def test_frequencies_do_not_run_off_to_infinity(preset):
     path = trace(
         from_functions(residual, start=(x / x.sum(), 1.0), target=2.0),
         preset=preset,
-        budget=Budget(factorizations=4000),
+        budget=Budget(factorizations=1000),
     )
     assert path.status is not Status.DIVERGED
 

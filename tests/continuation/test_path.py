@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from continuation import (
-    CONSERVATIVE,
     DEFAULT,
     FAST,
     Budget,
@@ -40,7 +39,7 @@ def steps(path):
     return [event.step for event in path.events]
 
 
-@by_preset(FAST, DEFAULT, CONSERVATIVE)
+@by_preset(FAST, DEFAULT)
 @pytest.mark.parametrize("homotopy", [Circle(), Cusp(), FreudensteinRoth()], ids=lambda h: type(h).__name__)
 def test_accumulated_arclength_is_the_length_to_the_fourth_order_in_the_angle(homotopy, preset):
     path = trace(homotopy, preset=preset, metric=metric.Euclidean())
