@@ -107,7 +107,7 @@ def solved(k: int) -> dict[str, Any]:
     x = [] if solution.x is None else solution.x.tolist()
     return {
         "status": solution.outcome.name,
-        "end": x if len(lcp.solve_by_enumeration(problem(k)).solutions) == 1 else [],
+        "end": x,
         "events": [],
         "counts": solution.counts.as_dict(),
     }
@@ -136,7 +136,7 @@ def differences(name: str, found: dict[str, Any], expected: dict[str, Any], exac
     said = []
     if found["status"] != expected["status"]:
         said.append(f"{name}: status {found['status']}, recorded {expected['status']}")
-    if not same_numbers(found["end"], expected["end"]):
+    if expected["end"] and not same_numbers(found["end"], expected["end"]):
         said.append(f"{name}: end {found['end']}, recorded {expected['end']}")
     events = found["events"], expected["events"]
     if len(events[0]) != len(events[1]) or not all(map(same_numbers, *events)):
@@ -165,6 +165,9 @@ def written() -> dict[str, Any]:
         )
         everywhere.append(json.loads(process.stdout))
     record = everywhere[0]
+    for k in range(PROBLEMS):
+        if len(lcp.solve_by_enumeration(problem(k)).solutions) != 1:
+            record[f"lcp {k}"]["end"] = []
     for name, entry in record.items():
         counts = [other[name]["counts"] for other in everywhere]
         entry["counts"] = {key: [min(c[key] for c in counts), max(c[key] for c in counts)] for key in counts[0]}
