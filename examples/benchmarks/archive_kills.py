@@ -5,6 +5,7 @@
 NUMBER processes at each work (trace, resume, recover, merge, export, sweep, pool), each killed at a random moment.
 """
 
+import math
 import os
 import pickle
 import random
@@ -74,19 +75,23 @@ def child(work: Callable[[], object], seconds: float | None = None) -> Child:
             finally:
                 os._exit(1)
         os.close(theirs)
-        pidfd = os.pidfd_open(process)
-        # An answer comes before the end; what raised an exception, or was killed by a signal, gives none.
-        ended = bool(select.select([pipe, pidfd], [], [], seconds)[0])
-        if not ended:
+        # An answer comes before the end; what raised an exception, or was killed by a signal, gives none, and its own
+        # children may keep the pipe open. Not every kernel has `pidfd_open`.
+        ended, answered, until = 0, False, math.inf if seconds is None else time.monotonic() + seconds
+        while not (ended or answered) and (left := until - time.monotonic()) > 0.0:
+            answered = bool(select.select([pipe], [], [], min(left, 0.01))[0])
+            ended, status, usage = os.wait4(process, os.WNOHANG)
+        in_time = bool(ended) or answered
+        if not in_time:
             with suppress(ProcessLookupError):
                 os.killpg(process, signal.SIGKILL)
             os.kill(process, signal.SIGKILL)
-        _, status, usage = os.wait4(process, 0)
-        os.close(pidfd)
+        if not ended:
+            _, status, usage = os.wait4(process, 0)
         os.set_blocking(ours, False)  # Its own children may be there yet.
         raw = pipe.read()
         said.seek(0)
-        return Child(pickle.loads(raw) if raw else None, said.read(), ended, status, usage)
+        return Child(pickle.loads(raw) if raw else None, said.read(), in_time, status, usage)
 
 
 def left_by_a_kill(file: Path, homotopy: Any, steps: int, rows: int, **options: Any) -> Path:
