@@ -27,8 +27,9 @@ HEAD = """# Constants that decide
 Every module-level number of `continuation` that decides something, with the reason that stands beside it in the
 source; a reason that is given once for several names stands at the last of them. Under "twice" and "half" is the first
 test that fails when the constant is doubled or halved, as `docs/generate_constants.py` tried it with the tests of its
-room: "nothing" where they pass, a dash where it was not tried. Of proofs it is said how many of 102 paths were proved,
-and with how many boxes, where that changed. This page is made by that script.
+room, or with half a minute of the tests that reach it: "nothing" where they pass, a dash where it was not tried. Of
+proofs it is said how many of 102 paths were proved, and with how many boxes, where that changed. This page is made by
+that script.
 
 """
 
