@@ -41,7 +41,8 @@ ARC_NOISE = 1e2
 CHORD_STEPS = Contraction()
 
 SMALL_INCREMENT = 1e-4
-"""Increment, in tolerances, accepted where round-off stops the iteration; after three factorisations 1 is."""
+"""Increment, in tolerances, accepted where round-off stops the iteration. After a second factorisation 1 is: a third
+brought 19 of 465 such places of the tests below."""
 
 
 @define(eq=False)
@@ -79,7 +80,7 @@ class PathSolver:
         if settled is not None:
             return settled, near.anchor
         u = guess
-        for enough in (*3 * (SMALL_INCREMENT,), *3 * (1.0,)):
+        for enough in (SMALL_INCREMENT, *5 * (1.0,)):
             system = evaluator.factor(u, border)
             settled = self._chord_steps(u, partial(system.approximate, rho=0.0), near, enough)
             if settled is not None:
