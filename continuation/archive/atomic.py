@@ -46,13 +46,17 @@ def beside(target: File) -> Iterator[File]:
             part.unlink()
 
 
-def publish(part: File, target: File, *, replace: bool = False) -> None:
+def publish(part: File, target: File, *, replace: bool = False, descriptor: int = -1) -> None:
     """Rename a complete file, once it is on disk; `replace` keeps the old file's mode.
 
-    Raises `ArchiveExistsError` if the name is taken.
+    `descriptor`: of an open, locked file; closing another ends POSIX locks. Raises `ArchiveExistsError` if the name is
+    taken.
     """
-    with part.open("rb") as written:
-        os.fsync(written.fileno())
+    if descriptor >= 0:
+        os.fsync(descriptor)
+    else:
+        with part.open("rb") as written:
+            os.fsync(written.fileno())
     if replace and target.exists():
         part.chmod(target.stat().st_mode & 0o7777)
     try:
@@ -111,7 +115,7 @@ def short(error: BaseException) -> str:
     return (error.strerror if isinstance(error, OSError) and error.strerror else text)[:200]
 
 
-# HDF5 uses flock, and POSIX locks end when any descriptor is closed: this leaves open file description locks.
+# HDF5 uses flock, and POSIX locks end when any descriptor is closed.
 _WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
 _TAKEN = (errno.EAGAIN, errno.EACCES)
 
@@ -129,9 +133,12 @@ class Lock:
             raise ArchiveError(f"{file}: may not be written ({error.strerror})") from None
         self.taken = True
         try:
-            if hasattr(fcntl, "F_OFD_SETLK"):
+            try:
                 fcntl.fcntl(self.descriptor, fcntl.F_OFD_SETLK, _WHOLE)
-            else:
+            except (AttributeError, OSError) as error:
+                # Neither macOS nor gVisor has it.
+                if getattr(error, "errno", None) in _TAKEN:
+                    raise
                 fcntl.lockf(self.descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             self.taken = error.errno not in _TAKEN

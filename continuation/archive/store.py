@@ -58,7 +58,7 @@ def put(
                 fill(store)
             if not grows:
                 store.close()
-            publish(part, target, replace=replace)
+            publish(part, target, replace=replace, descriptor=store._lock.descriptor)
         except BaseException:
             store.close()
             raise

@@ -104,10 +104,9 @@ def problem(k: int) -> lcp.LCP:
 def solved(k: int) -> dict[str, Any]:
     """The answer to the k-th LCP, in numbers; a budget of work, so that no clock decides."""
     solution = lcp.solve(problem(k), restarts=3, budget=continuation.Budget(steps=2000))
-    x = [] if solution.x is None else solution.x.tolist()
     return {
         "status": solution.outcome.name,
-        "end": x,
+        "end": [] if solution.x is None else solution.x.tolist(),
         "events": [],
         "counts": solution.counts.as_dict(),
     }

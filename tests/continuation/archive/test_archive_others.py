@@ -1,6 +1,9 @@
 """What others do to a file while it is written, or to one that was left: children, threads, observers, bits."""
 
+import errno
+import fcntl
 import gc
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -10,7 +13,7 @@ from continuation.archive import ArchiveError, open_archive, resume
 from continuation.controllers import Bounds, Fixed
 from problems.bifurcation import ExponentialCosine
 
-from .util import child, logged, observer, read
+from .util import child, logged, observer, outcome, read
 
 HOMOTOPY, OPTIONS = ExponentialCosine(3), {"controller": Fixed(bounds=Bounds(initial=0.05))}
 
@@ -84,3 +87,13 @@ def test_a_log_writes_one_path_after_another(tmp_path, path):
             with pytest.raises(ArchiveError, match="a path is being written already"):
                 trace(HOMOTOPY, archive=tracer.observers[0], **OPTIONS)
     assert np.array_equal(read(file).u, path.u)
+
+
+@pytest.mark.parametrize("kernel", ["Linux", "gVisor"])
+def test_another_process_is_refused_whatever_locks_the_kernel_has(tmp_path, monkeypatch, kernel):
+    if kernel == "gVisor":
+        monkeypatch.setattr(fcntl, "fcntl", Mock(side_effect=OSError(errno.EINVAL, "Invalid argument")))
+    file = tmp_path / "run.h5"
+    for step in tracer_to(file):
+        if step.index == 12:
+            assert "is being written by another process" in child(lambda: outcome(resume, file)[0]).answer
