@@ -20,7 +20,7 @@ from problems.lcp.data.matrix_structure import Structure
 from problems.lcp.data.problem import BETWEEN, LCP, MixedLCP, State
 
 COARSEST_ORDER = 200
-"""Problems up to this order are not coarsened but corrected, at most this often; other levels get one correction."""
+"""Problems up to this order are not coarsened but corrected, at most this often; other levels three times."""
 
 LEAST_COARSENING = 0.8
 """Coarsening stops if a larger share of the unknowns remains; a grid keeps half."""
@@ -60,9 +60,9 @@ def _interpolated(problem: MixedLCP, d: Array, factoring: Factoring, counts: Cou
     found = iterate(Faces(Structure(coarse), factoring=factoring), state, Policy(steps), counts=counts)
     x, diagonal = problem.clipped(P @ coarse.clipped(found.x)), problem.A.diagonal()
     # Sweeps correct errors of the interpolation.
-    for _ in range(3):
+    for _ in range(20):
         x = problem.clipped(x - DAMPING * problem.w(x) / diagonal)
-    return _states(problem, x), 1
+    return _states(problem, x), 3
 
 
 def _states(problem: MixedLCP, x: Array) -> State:

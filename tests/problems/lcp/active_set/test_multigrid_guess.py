@@ -35,11 +35,11 @@ def solved(problem, **options):
     return found
 
 
-@pytest.mark.parametrize(("m", "every"), [(31, 8), (63, 10)])
-def test_a_membrane_takes_two_factorisations_of_the_finest_level(m, every, orders):
+@pytest.mark.parametrize(("m", "every"), [(31, 7), (63, 8)])
+def test_a_membrane_takes_one_factorisation_of_the_finest_level(m, every, orders):
     found = solved(BENCHMARK["obstacle_2d"](m), sparse="superlu")
     assert found.counts.factorizations == len(orders) == every
-    assert sum(2 * order > m * m for order in orders) == 2
+    assert sum(2 * order > m * m for order in orders) == 1
     assert f"Sparse factorisations: {every} by SuperLU" in found.message
 
 
@@ -58,7 +58,7 @@ def test_the_cascade_does_not_depend_on_which_side_the_obstacle_is(orders):
     x = solved(problem).x
     np.testing.assert_allclose(solved(below).x - l, x, atol=1e-9)
     np.testing.assert_allclose(-solved(above).x - l, x, atol=1e-9)
-    assert len(orders) == 3 * 8
+    assert len(orders) == 3 * 7
 
 
 def test_units_of_the_unknowns_cost_the_cascade_nothing(orders):
