@@ -120,6 +120,16 @@ _WHOLE = struct.pack("hhlli4x", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0)
 _TAKEN = (errno.EAGAIN, errno.EACCES)
 
 
+def _lock(descriptor: int) -> None:
+    try:
+        fcntl.fcntl(descriptor, fcntl.F_OFD_SETLK, _WHOLE)
+    except (AttributeError, OSError) as error:
+        if getattr(error, "errno", None) in _TAKEN:
+            raise
+        # Neither macOS nor gVisor has it.
+        fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
 class Lock:
     """A lock on a file until `close` or the process ends; `taken` is False if another process holds it.
 
@@ -133,13 +143,7 @@ class Lock:
             raise ArchiveError(f"{file}: may not be written ({error.strerror})") from None
         self.taken = True
         try:
-            try:
-                fcntl.fcntl(self.descriptor, fcntl.F_OFD_SETLK, _WHOLE)
-            except (AttributeError, OSError) as error:
-                # Neither macOS nor gVisor has it.
-                if getattr(error, "errno", None) in _TAKEN:
-                    raise
-                fcntl.lockf(self.descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(self.descriptor)
         except OSError as error:
             self.taken = error.errno not in _TAKEN
 

@@ -110,9 +110,8 @@ HARM = {
 @pytest.mark.parametrize("harm", HARM)
 def test_one_line_or_nothing_amiss(tmp_path, base, harm, sealed):
     secret, right, refused = shutil.copy(base, tmp_path / "secret.h5"), read(base).u, 0
-    # Checksums refuse what is damaged, whatever is asked for.
-    for name in OPERATIONS if sealed else ("read", "describe", "resume"):
-        file, operation = shutil.copy(base, tmp_path / f"{name}.h5"), OPERATIONS[name]
+    for name, operation in OPERATIONS.items():
+        file = shutil.copy(base, tmp_path / f"{name}.h5")
         with h5py.File(file, "r+", libver="latest") as opened:
             HARM[harm](opened, secret)
             if sealed:

@@ -78,12 +78,13 @@ def test_a_small_file_takes_no_more_than_it_may(changed, bomb):
         "import sys\nfrom pathlib import Path\n"
         "from tests.continuation.archive.test_archive_limits import OPERATIONS, READ, outcome\n"
         "for name in READ: outcome(OPERATIONS[name], Path(sys.argv[1]))\n"
-        # Some sandboxes' kernels do not tell it.
-        "print((Path('/proc/self/status').read_text().partition('VmHWM:')[2].split() or ['0'])[0])"
+        "print(*Path('/proc/self/status').read_text().partition('VmHWM:')[2].split()[:1])"
     )
     for left in (".csv", ".paths.csv", ".more.h5"):
         file.with_suffix(left).unlink(missing_ok=True)
     done = subprocess.run([sys.executable, "-c", code, file], capture_output=True, text=True, check=True)
+    if not done.stdout.strip():
+        pytest.skip("this kernel does not tell how much memory was held")
     assert int(done.stdout) << 10 < MOST_BYTES
 
 
