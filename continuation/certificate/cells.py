@@ -19,8 +19,8 @@ OVERHANG = 1e-3
 
 SLAB_PARTS = 4
 """Parts of a slab for H on the cubic, whose remainder is of third order, and for signs of what may vanish inside; twice
-as many for the parameter's rate, else two turning points 1e-10 apart look like one. With eight for H the exponential
-cosines with n = 8 take a third longer, in as many boxes."""
+as many for the parameter's rate, else two turning points 1e-10 apart look like one. With eight for H proofs take a
+third longer."""
 
 
 @frozen(eq=False)

@@ -37,8 +37,7 @@ HORIZON = 1e100
 """Largest number on a path, whose square is finite."""
 
 HIGHEST_POLE = 12.0
-"""Largest order p of a pole, and of its inverse: smaller means a logarithm or an exponential decay. (At folds and cusps
-p + 1 is at most 1/2.)"""
+"""Largest order p of a pole, and of its inverse: smaller means a logarithm or an exponential decay."""
 
 Monitor = tuple[float, ...]
 

@@ -19,7 +19,7 @@ from continuation.evaluation.errors import EvaluationError
 from continuation.evaluation.evaluator import Evaluator
 from continuation.metric import norm
 from continuation.point.arc import cubic_between
-from continuation.point.linearization import SOLVED, Linearization, linearize, relinearize
+from continuation.point.linearization import SOLVED, Linearization, generic, linearize, relinearize
 from continuation.point.projection import PathSolver, arc_on_path
 from continuation.tolerance import Tolerance
 
@@ -130,7 +130,8 @@ class Endgame:
         if end.winding_number > 1 or last.orientation == 0:
             return True
         try:
-            at = relinearize(self.solver.evaluator, end.u, last.weights, last.anchor, last.border, signed=True)
+            guess = generic(last.weights)
+            at = relinearize(self.solver.evaluator, end.u, last.weights, last.anchor, last.border, guess=guess)
         except EvaluationError:
             return True
         return at.orientation == last.orientation or not regular(self.solver, at, last)
@@ -167,7 +168,7 @@ class Endgame:
                 return None
             u = np.append(u[:-1], lam)
             if anchor is not None:
-                at = relinearize(evaluator, u, here.weights, anchor, here.border, signed=True)
+                at = relinearize(evaluator, u, here.weights, anchor, here.border, guess=generic(here.weights))
             else:
                 at = linearize(evaluator, u, here.weights, here.border)
             return at, np.maximum(noise, _round_off(evaluator, at, unit))

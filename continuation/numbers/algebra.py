@@ -63,7 +63,9 @@ class GradientAlgebra:
 
     def expansion(self, f: list[Any], a: Coefficients) -> Coefficients:
         """The chain rule."""
-        return joined(f[0][None], f[1] * a[1:])
+        out = f[1] * a
+        out[:1] = f[0][None]
+        return out
 
 
 @frozen
@@ -141,7 +143,8 @@ def compose(algebra: Algebra, rule: series.SeriesRule, a: Coefficients) -> Coeff
         return _at(algebra, f if told.all() else [f[0], *(c.where(told) for c in f[1:])], a)
     if isinstance(algebra, TaylorAlgebra):
         return rule(a)
-    line = np.stack([a[0], np.ones_like(a[0]), *[np.zeros_like(a[0])] * (order - 1)][: order + 1])
+    line = np.zeros((order + 1, *a.shape[1:]))
+    line[0], line[1:2] = a[0], 1.0
     return _at(algebra, rule(line), a)
 
 

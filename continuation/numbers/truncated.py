@@ -207,6 +207,8 @@ def gather(x: Any, one: str = "an array of series") -> Any:
     """`x`, an array of numbers, or stacked lists of series."""
     if isinstance(x, Truncated):
         return x
+    if type(x) is float:
+        return np.asarray(x)
     if isinstance(x, list | tuple) or (isinstance(x, np.ndarray) and x.dtype == object and x.ndim):
         parts = [gather(part, one) for part in x]
         if any(isinstance(part, Truncated) for part in parts):

@@ -66,8 +66,10 @@ def _power(algebra: Algebra, a: Coefficients, b: Coefficients) -> Coefficients:
     exponents = _exponents(b)
     if exponents is None:
         return _variable_power(algebra, a, b)
+    if exponents.size == 1:
+        return compose(algebra, partial(series.power, r=exponents.item()), a)
     distinct = np.unique(exponents)
-    a = a if exponents.size == 1 else spread(a, np.broadcast_shapes(a.shape[1:], b.shape[1:]))
+    a = spread(a, np.broadcast_shapes(a.shape[1:], b.shape[1:]))
     if len(distinct) == 1:
         return compose(algebra, partial(series.power, r=float(distinct[0])), a)
     exponents = np.broadcast_to(exponents, a.shape[own_axes(a) :])

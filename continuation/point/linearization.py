@@ -125,27 +125,21 @@ def relinearize(
     weights: Array,
     anchor: Anchor,
     along: Array,
-    signed: bool = False,
     accuracy: float = REFINED,
     guess: Array | None = None,
 ) -> Linearization:
     """Linearize at u with a nearby factorisation; the tangent v is refined to `accuracy`, with along . v > 0.
 
-    `guess`: about a multiple of the tangent.
+    `guess`: about a multiple of the tangent, or `generic`.
 
-    Refinement with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is factored. If
-    `signed`, it begins with a generic vector, whose error shrinks only if det M~ and det M have one sign.
+    Refinement with factors of M~ multiplies errors by I - M~^{-1} M; without reliable contraction u is factored. The
+    error of a generic guess shrinks only if det M~ and det M have one sign.
     """
     apply = evaluator.differential(u)
     tangent = None
     if apply is not None:
         length = 0.0 if guess is None else dot(anchor.border, guess)
-        if signed:
-            begin = generic_vector(u.size) / np.sqrt(weights)
-        elif guess is not None and length != 0.0:
-            begin = guess / length
-        else:
-            begin = anchor.system.solve(np.zeros(u.size - 1), 1.0)
+        begin = anchor.system.solve(np.zeros(u.size - 1), 1.0) if guess is None or length == 0.0 else guess / length
         tangent = _refined(apply, anchor, begin, weights, accuracy)
     if tangent is None:
         return linearize(evaluator, u, weights, along)
@@ -153,6 +147,11 @@ def relinearize(
     flip = dot(along, tangent) < 0.0
     sign = anchor.system.sign
     return _oriented(anchor, u, weights, -tangent if flip else tangent, -sign if flip else sign)
+
+
+def generic(weights: Array) -> Array:
+    """A guess with a part along every eigenvector."""
+    return generic_vector(weights.size) / np.sqrt(weights)
 
 
 def _refined(
@@ -171,7 +170,8 @@ def _refined(
             return None
         v = refinement.x
         longest += size
-        size = refinement.error
+        # Ratios fall by Broyden's updates.
+        size *= min(refinement.ratio, 1.0) if refinement.count > 1 else 1.0
         if size <= accuracy * longest and size <= accuracy * norm(weights, v):
             break
         if refinement.count == TANGENT_REFINEMENT.iterations:

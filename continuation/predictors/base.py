@@ -24,7 +24,8 @@ class Knot:
 class Prediction(Protocol):
     """A curve from the current point.
 
-    With a `derivative` and an `order`, it is accurate enough to be the path (`continuation.point.segment.Curve`).
+    With a `derivative` and an `order`, it is accurate enough to be the path (`continuation.point.segment.Curve`). A
+    ``slope(h, missed)`` near the tangent where the path is `missed` away saves solves.
     """
 
     @property

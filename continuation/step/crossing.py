@@ -163,6 +163,9 @@ class _Looks:
             left.append(1.0 - max([0.0, *there]))
             least = 0.0 if self.ends and t == 1.0 else left[-2] / SPAN
             if left[-1] < least and found is None:
+                if len(there) > 1 and 1.0 < there[0] < (1.0 - NEAR_CROSSING) * there[-1]:
+                    # Several vanish: no arc so long counts.
+                    return self._too_long(t / there[-1], before)
                 found = self._branch_point(t, t / there[-1])
                 # At the arc's end z may vanish beyond.
                 if found is None and (t < 1.0 or there[-1] >= 1.0 - EIGENVALUE_ACCURACY):
@@ -208,17 +211,20 @@ class _Looks:
             over = BEST * s
             return self.rejected(Rejection.OTHER_BRANCH, over if over < STEP_BACK else STEP_BACK * min(s, 1.0))
         if not all(_as_expected(mu, seen.expected(t, s), seen.lost) for t, mu in told.items()):
-            others = [t / mu for t, there in told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
-            # The arc must end before another eigenvalue vanishes.
-            behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
-            step = min(BEST * s, behind) if behind * (1.0 - NEAR_CROSSING) > s else STEP_BACK * s
-            return self.rejected(Rejection.CROSSINGS, min(step, STEP_BACK))
+            return self._too_long(s)
         if s > 1.0:
             return None
         tangent = arc.segment.derivative(s)
         rays = None if seen.simple is None else seen.simple.rays(tangent, arc.a.weights)
         onward = tangent / norm(arc.a.weights, tangent) if rays is None else rays[1]
         return Crossed(evolve(arc.a, u=seen.u, tangent=onward), rays)
+
+    def _too_long(self, s: float, least: float = 0.0) -> Rejected:
+        """An arc on which others vanish behind s must end before them."""
+        others = [t / mu for t, there in self.told.items() for mu in there if t > (s + NEAR_CROSSING) * mu > 0.0]
+        behind = (1.0 - NEAR_CROSSING) ** 2 * min(others, default=0.0)
+        step = min(BEST * s, behind) if behind * (1.0 - NEAR_CROSSING) > s else STEP_BACK * s
+        return self.rejected(Rejection.CROSSINGS, min(max(step, least), STEP_BACK))
 
     def rejected(self, reason: Rejection, factor: float) -> Rejected:
         attempt = self.attempt

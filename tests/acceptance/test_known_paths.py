@@ -1,17 +1,17 @@
-"""Paths whose turning points, ends and lengths are known, in closed form or to many digits, under every preset."""
+"""Paths whose turning points, ends and lengths are known, in closed form or to many digits, under two presets."""
 
 import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import CONSERVATIVE, DEFAULT, FAST, Status, TurningPoint, trace
+from continuation import DEFAULT, FAST, Status, TurningPoint, trace
 from continuation import arclength as length
 from continuation.controllers import Bounds
 from problems.bifurcation import Aircraft, Circle, Cusp, ExponentialCosine
 from problems.nonlinear import brown, fixed_point
 from tests.truth import aircraft, exponential_cosine
 
-from ..util import path_of
+from ..util import by_preset, path_of
 
 # n: x1 at the end, turning points of lam.
 COSINES = {
@@ -68,7 +68,7 @@ KNOWN = {
 CASES = {
     **{
         f"{preset.name}, {name}": (preset, row)
-        for preset in (FAST, DEFAULT, CONSERVATIVE) for name, row in KNOWN.items()
+        for preset in (FAST, DEFAULT) for name, row in KNOWN.items()
     },
     # Steps of a tenth are those of the ceiling, whatever the preset.
     **{
@@ -90,6 +90,6 @@ def test_turning_points_ends_and_lengths(preset, row):
     assert along is None or length(homotopy, path) == along
 
 
-@pytest.mark.parametrize("preset", [FAST, DEFAULT, CONSERVATIVE], ids=lambda preset: preset.name)
+@by_preset(FAST, DEFAULT)
 def test_the_published_digits_of_a_fold(preset):
     assert trace(Cusp(1.0), preset=preset).turning_points[0].lam == pytest.approx(0.3849001794597505, abs=1e-14)

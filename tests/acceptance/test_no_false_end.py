@@ -33,8 +33,8 @@ from continuation.step.tracer import Tracer
 from ..util import benchmark, by_preset, path_of
 
 families = benchmark("ends.py")
-without_series = by_preset(FAST, DEFAULT, CONSERVATIVE)
-every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
+without_series = by_preset(FAST, DEFAULT)
+every_preset = by_preset(FAST, DEFAULT, SERIES)
 
 
 NOISE = [
@@ -48,7 +48,7 @@ NOISE = [
 @pytest.mark.parametrize(
     ("preset", "family", "seed"),
     [
-        *itertools.product((FAST, DEFAULT, CONSERVATIVE, SERIES), families.FAMILIES, ([0, 45], [1, 45])),
+        *itertools.product((FAST, DEFAULT, SERIES), families.FAMILIES, ([0, 45], [1, 45])),
         *((preset, *noise) for preset in (FAST, CONSERVATIVE) for noise in NOISE),
     ],
 )

@@ -86,7 +86,7 @@ def test_the_first_scales_are_found_in_a_few_looks(n):
     assert tracer.counts.residuals <= 2 * 8 + 3 + 2 + 3 * 8
 
 
-@every_preset
+@by_preset(FAST, DEFAULT, SERIES)
 @pytest.mark.parametrize("offset", [0.0, 273.15, 1e4])
 @pytest.mark.parametrize("a", [3.0, 1.5, 1.1])
 def test_turning_points_in_celsius_and_in_kelvin(preset, offset, a):
@@ -142,7 +142,7 @@ POLES = [
 ]
 
 
-@every_preset
+@by_preset(FAST, DEFAULT, SERIES)
 @pytest.mark.parametrize(("y", "slope", "pole", "order"), POLES, ids=["simple", "tangent", "double"])
 @pytest.mark.parametrize("unit", [1.0, 1e-6, 1e6])
 def test_a_pole_is_named_and_no_point_beside_the_path_counts(preset, y, slope, pole, order, unit):

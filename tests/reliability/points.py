@@ -50,7 +50,7 @@ class Point:
 
 
 KILLS = Campaign(campaigns.kills, 3, 1332)
-DAMAGE = Campaign(campaigns.damage, 36, 1723)
+DAMAGE = Campaign(campaigns.damage, 20, 1723)
 TRUTH = Campaign(campaigns.tally("truth"), 60, 54_000)
 FULL = Campaign(campaigns.full, 4, 90)
 

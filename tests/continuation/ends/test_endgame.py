@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import continuation
-from continuation import CONSERVATIVE, DEFAULT, FAST, SERIES, Status
+from continuation import DEFAULT, FAST, SERIES, Status
 from problems.lcp.data.problem import LCP
 from problems.lcp.homotopies import KKTHomotopy, WangHomotopy
 
@@ -14,8 +14,7 @@ from ...util import by_preset, path_of
 from ..util import scalar
 from .test_ends import power
 
-presets = by_preset(FAST, DEFAULT, SERIES)
-every_preset = by_preset(FAST, DEFAULT, CONSERVATIVE, SERIES)
+every_preset = by_preset(FAST, DEFAULT, SERIES)
 
 COUPLED = continuation.from_functions(
     lambda y, lam: np.array([y[0] ** 2 - lam, y[1] ** 2 - 2.0 * lam * (1.0 + y[0])]), start=([1.0, 2.0], 1.0)
@@ -28,7 +27,7 @@ MIXED = continuation.from_functions(
 DOUBLE = WangHomotopy(LCP(np.array([[2.0, 1.0], [1.0, 2.0]]), np.zeros(2)), x0=[1.0, 2.0])
 
 
-@presets
+@every_preset
 @pytest.mark.parametrize(
     ("homotopy", "y", "winding", "within"),
     [
@@ -48,7 +47,7 @@ def test_a_singular_end_is_the_limit_of_a_power_series(homotopy, y, winding, wit
     assert f"^(1/{winding})" in path.message
 
 
-@presets
+@every_preset
 @pytest.mark.parametrize("size", [0.0, 1.0, 10.0, 100.0])
 def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_the_path(preset, size):
     """H_y = lam^2: round-off of `size` 1e-16 in H leaves y 1e-6 at lam = 1e-4, and at the target any y solves H = 0.
@@ -65,7 +64,7 @@ def test_where_round_off_grows_towards_the_end_the_limit_has_more_digits_than_th
     assert abs(path.endpoint.y[0] - 1.0) <= 10.0 * path.end_error + 1e-14
 
 
-@presets
+@every_preset
 def test_a_limit_that_does_not_satisfy_the_equations_is_no_end(preset):
     """A homotopy that jumps at the target itself: the path has the limit 0, where H(0, 0) = -1."""
     homotopy = scalar(
@@ -119,7 +118,7 @@ ENDS = {
 @pytest.mark.parametrize(
     ("make", "n", "seed", "preset"),
     [
-        *((KKTHomotopy, *case, preset) for case in ENDS for preset in (FAST, DEFAULT, CONSERVATIVE, SERIES)),
+        *((KKTHomotopy, *case, preset) for case in ENDS for preset in (FAST, DEFAULT, SERIES)),
         # Not enough on (8, 73): there the other branch is a millionth of the path away.
         *((Unoriented, *case, DEFAULT) for case in ENDS if case != (8, 73)),
     ],

@@ -91,7 +91,7 @@ def test_cells_that_are_all_alike(preset, scale, origin, n):
     np.testing.assert_allclose(found, expected, rtol=1e-7 if origin else 1e-10)
 
 
-@by_preset(DEFAULT, CONSERVATIVE)
+@by_preset(FAST, DEFAULT)
 @pytest.mark.parametrize("family", ["transversal", "pitchfork", "transcritical"])
 def test_random_crossings_in_random_units(family, preset):
     rng = np.random.default_rng(21)

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 
 import continuation
 
-from ...util import every_preset, path_of
+from ...util import by_preset, every_preset, path_of
 from ..util import scalar
 
 PRESETS = continuation.FAST, continuation.DEFAULT, continuation.CONSERVATIVE
@@ -100,7 +100,7 @@ def test_unknowns_that_stand_still_have_units_of_their_own(seed, preset):
     passed(Trunk(seed, spread=4.0), preset)
 
 
-@every_preset
+@by_preset(*PRESETS[:2])
 @pytest.mark.parametrize("seed", [0, 3, 8, 33, 49, 206])
 def test_eigenvalues_that_vanish_together_may_do_so_at_different_rates(seed, preset):
     trunk = Trunk(seed, bent=True)

@@ -232,7 +232,7 @@ MADE = {
     ),
     "more zeros than it may hold": (
         "p.mat",
-        lambda path: scipy.io.savemat(path, {"A": np.zeros((9000, 9000)), "q": Q}, do_compression=True),
+        lambda path: scipy.io.savemat(path, {"A": np.zeros((4200, 4200)), "q": Q}, do_compression=True),
         "cannot be read",
     ),
     **{harm: ("p.h5", partial(harmed, harm), r"none of A, q" if "names" in harm else "^path: ") for harm in HARM},
