@@ -41,7 +41,7 @@ class Landing:
         guess = self._guess(point, prediction, h)
         if guess is None:
             return None
-        attempt = self._correct(point, prediction, *guess)
+        attempt = self._correct(point, *guess)
         if isinstance(attempt, Rejected):
             return attempt
         arrival = attempt.point
@@ -64,7 +64,7 @@ class Landing:
         except EvaluationError:
             return None
 
-    def _correct(self, point: Linearization, prediction: Prediction, guess: Array, h: float) -> Attempt:
+    def _correct(self, point: Linearization, guess: Array, h: float) -> Attempt:
         solver = self.stepper.solver
         unit = np.append(np.zeros(guess.size - 1), 1.0)
         correction = LANDING.correct(solver.evaluator, point, guess, unit, solver.tolerance)
@@ -77,7 +77,7 @@ class Landing:
         if solver.max_step is not None and solver.max_step(point.u, correction.u - point.u) < 1.0 - SIX_DIGITS:
             return Rejected(h, Rejection.OUTSIDE, contraction=correction.contraction)
         landed = evolve(correction, u=np.append(correction.u[:-1], self.target))
-        return self.stepper.arrive(point, prediction, guess, h, landed)
+        return self.stepper.arrive(point, point.border, h, landed)
 
 
 def crossing(solver: PathSolver, arc: Arc, value: float) -> Linearization | None:

@@ -170,8 +170,7 @@ def _refined(
             return None
         v = refinement.x
         longest += size
-        # Ratios fall by Broyden's updates.
-        size *= min(refinement.ratio, 1.0) if refinement.count > 1 else 1.0
+        size = refinement.error
         if size <= accuracy * longest and size <= accuracy * norm(weights, v):
             break
         if refinement.count == TANGENT_REFINEMENT.iterations:

@@ -31,7 +31,7 @@ SLACK = 0.004
 """Largest distance of arc and path, in arc lengths: that of a cubic that turns by one radian."""
 
 MISSED, EVEN = 0.07, 1.5e-4
-"""MISSED: a smooth arc errs by a small share of its prediction's error, an arc over an
+"""MISSED: a smooth arc errs by a small share of its prediction's error (1/64 for an extrapolated cubic), an arc over an
 S by as much. EVEN: smaller errors, in arc lengths, are ignored; S-bends of a thousandth of the path still show in steps
 of a third."""
 

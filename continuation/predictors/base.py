@@ -24,8 +24,7 @@ class Knot:
 class Prediction(Protocol):
     """A curve from the current point.
 
-    With a `derivative` and an `order`, it is accurate enough to be the path (`continuation.point.segment.Curve`). A
-    ``slope(h, missed)`` near the tangent where the path is `missed` away saves solves.
+    With a `derivative` and an `order`, it is accurate enough to be the path (`continuation.point.segment.Curve`).
     """
 
     @property

@@ -28,10 +28,6 @@ class Line:
         point += self.u
         return point
 
-    def slope(self, h: float, missed: Array) -> Array:
-        """The slope at h of the parabola that ends `missed` beside the line."""
-        return self.v + 2.0 / h * missed
-
 
 @frozen(eq=False)
 class Cubic:
@@ -52,11 +48,6 @@ class Cubic:
             dscal(h, point)
         point += self.u
         return point
-
-    def slope(self, h: float, missed: Array) -> Array:
-        """The slope at h of the quartic that ends `missed` beside the cubic."""
-        cube = (h * (3.0 * h - 2.0 * self.sigma)) * self.cube
-        return self.v + 2.0 * h * self.square + cube + (2.0 / h + 2.0 / (h - self.sigma)) * missed
 
 
 @frozen

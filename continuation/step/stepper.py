@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 from attrs import frozen
 
-from continuation.arrays import Array, dot, finite
+from continuation.arrays import SIX_DIGITS, Array, dot, finite
 from continuation.correctors import Correction, Corrector
 from continuation.evaluation.errors import EvaluationError
 from continuation.metric import inner
@@ -80,24 +80,18 @@ class Stepper:
             reason = Rejection.OUTSIDE
         if reason is not None:
             return Rejected(h, reason, contraction=correction.contraction)
-        return self.arrive(point, prediction, predicted, h, correction)
+        return self.arrive(point, border, h, correction)
 
-    def arrive(
-        self, point: Linearization, prediction: Prediction, predicted: Array, h: float, correction: Correction
-    ) -> Attempt:
-        """Linearize at the corrected point.
-
-        If the determinant changed its sign since the factorisation, looks along the arc show it.
-        """
-        evaluator, weights, anchor, u = self.solver.evaluator, point.weights, correction.anchor, correction.u
-        slope = getattr(prediction, "slope", None)
+    def arrive(self, point: Linearization, border: Array, h: float, correction: Correction) -> Attempt:
+        """Linearize at the corrected point."""
+        evaluator, weights, anchor = self.solver.evaluator, point.weights, correction.anchor
         try:
             if anchor is not None:
-                guess = slope(h, u - predicted) if slope else generic(weights)
-                accuracy = max(REFINED, self.solver.tolerance.relative)
-                arrival = relinearize(evaluator, u, weights, anchor, point.border, accuracy, guess)
+                # The tangent is needed to six digits of the tolerance.
+                accuracy = max(REFINED, SIX_DIGITS * self.solver.tolerance.relative)
+                arrival = relinearize(evaluator, correction.u, weights, anchor, border, accuracy, generic(weights))
             else:
-                arrival = linearize(evaluator, u, weights, point.border)
+                arrival = linearize(evaluator, correction.u, weights, border)
         except EvaluationError as error:
             return Rejected(h, error.rejection, str(error), correction.contraction)
         cosine = inner(weights, point.tangent, arrival.tangent)
