@@ -41,7 +41,7 @@ def run(text: str, folder: Path, name: str) -> Iterator[Shown]:
         before = _pictures(folder)
         printed = io.StringIO()
         # What the page changes in the environment ends with it; help texts are as wide as a page.
-        surroundings = patch.dict(os.environ, {"COLUMNS": "92"})
+        surroundings = patch.dict(os.environ, {"COLUMNS": "92", "MPLBACKEND": "Agg"})
         with surroundings, _as_main(module), contextlib.chdir(folder), contextlib.redirect_stdout(printed):
             exec(code, module.__dict__)
         after = _pictures(folder)

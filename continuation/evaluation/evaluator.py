@@ -248,6 +248,7 @@ class Evaluator:
             self._checked = True
         while len(self._kept) >= DERIVATIVES_KEPT:
             del self._kept[next(iter(self._kept))]
+        # Plug-ins may reuse their arrays.
         H_y, column = answer[0], np.array(answer[1], dtype=float)
         if isinstance(H_y, np.ndarray):
             whole = np.concatenate((H_y, column[:, None]), axis=1)

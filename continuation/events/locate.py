@@ -36,7 +36,7 @@ MONITOR_PLACES = 17
 
 CONVERGES = 8.0
 """Least fall of the model's error at half the length; a cubic's falls sixteenfold. Without it functions like a
-determinant beside a fold cost 256 divisions of an arc."""
+determinant beside a fold, which cubics model badly, cost 256 divisions of an arc."""
 
 DIVISIONS = 8
 """Most divisions of an arc."""

@@ -36,8 +36,8 @@ NEARER = 0.1
 diagonal's largest entry is near enough."""
 
 DIMENSIONS, TESTS_IN_ALL = 40, 6
-"""Largest Krylov dimension per wanted eigenvalue, and one more; eigenvalues are tested at each growth of it by a
-sixth."""
+"""Largest Krylov dimension per wanted eigenvalue, and one more; eigenvalues are tested at each growth of it by a sixth:
+all tests then cost little more than the last."""
 
 
 @frozen(eq=False)

@@ -50,7 +50,7 @@ def test_an_orbit_loses_stability_where_no_parameter_moves_it(name, kind):
     path = continuation.trace(orbit, direction=1, events=[TargetValue(0.4)])
     lost, _ = path.events
     assert name in lost.name
-    # The first step, of 2e9, has forty crossings: each search for one took 300 solves.
+    # A constant circle is a straight path; its first step, of 2e9, has forty crossings, whose search took 300 solves.
     assert path.counts.solves < 6000
     assert lost.lam == pytest.approx(0.0, abs=1e-9)
     assert [path.steps[k].observed["unstable"] for k in (0, -1)] == [0.0, 2.0 if name == "torus" else 1.0]
