@@ -36,7 +36,7 @@ def finite(entries: Array) -> bool:
 
 
 def largest(entries: Array) -> float:
-    """The largest magnitude of finite entries, N > 0."""
+    """Largest magnitude of finite entries, N > 0."""
     return abs(float(entries[idamax(entries)]))
 
 

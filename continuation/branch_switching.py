@@ -30,7 +30,7 @@ ONE_LINE = -0.99
 
 
 def branch_directions(homotopy: Any, event: LocatedEvent) -> tuple[Array, ...]:
-    """Return the directions of the branches at a branch point.
+    """Return the branches' directions at a branch point.
 
     At a simple one they solve sum_ij alpha_i alpha_j phi' H''[w_i, w_j] = 0 on the kernel (Keller 1977; Allgower and
     Georg, Section 8.1).
@@ -97,7 +97,7 @@ def crossing_rays(homotopy: Any, event: LocatedEvent) -> Array:
 
 
 def metric_at(event: LocatedEvent) -> Array:
-    """The metric at the event, stored or from its tangent."""
+    """The event's metric, stored or from its tangent."""
     if event.weights is not None:
         return event.weights
     size = np.abs(event.tangent)

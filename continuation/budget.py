@@ -20,7 +20,7 @@ class Budget:
     arclength: float = field(default=math.inf, validator=POSITIVE)
 
     def spent(self, counts: Counts, seconds: float, arclength: float = 0.0) -> str:
-        """The exhausted limit as text, or "".
+        """Exhausted limit as text, or "".
 
         Parameters
         ----------
@@ -28,10 +28,6 @@ class Budget:
         seconds : float
         arclength : float
             So far, in the trace's metric.
-
-        Returns
-        -------
-        str
         """
         for spent, limit, unit in (
             (counts.accepted, self.steps, "steps"),

@@ -145,7 +145,7 @@ class BoundHopf:
             raise EvaluationError(str(error)) from error
 
     def monitor(self, u: Array, v: Array) -> float:
-        """The real part of the pair nearest to the axis."""
+        """Real part of the pair nearest to the axis."""
         pairs = self.at(u).pairs
         return float(pairs.real[np.argmin(np.abs(pairs.real))]) if pairs.size else np.nan
 
@@ -158,7 +158,7 @@ class BoundHopf:
         return dict(zip(("unstable", "rightmost", "frequency", "covered"), known))
 
     def found_on(self, solver: PathSolver, arc: Arc) -> list[Linearization]:
-        """The Hopf points of an arc, in order."""
+        """An arc's Hopf points, in order."""
         found: list[Linearization] = []
         for (left, before), (right, after) in pairwise(self._looks(arc)):
             p, q = before.unstable_pairs, after.unstable_pairs

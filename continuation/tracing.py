@@ -1,4 +1,4 @@
-"""Ways to trace: one way, both ways, in unknowns that are renewed along the path; and to solve at one parameter."""
+"""Ways to trace: one way, both ways, in renewed unknowns; and to solve at one parameter."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def trace(
     homotopy : Homotopy
         Has `start`, `residual` and optional capabilities (`continuation.homotopy`).
     archive : path or PathLog, default None
-        New HDF5 file for the path.
+        New HDF5 file.
     save_every : int, default 1
         Write every n-th step, and ends and events.
     progress : bool, default False
@@ -58,7 +58,7 @@ def trace(
         Prove the path (`continuation.certify`), with shorter steps if needed; see `path.proof`. The residual must
         accept interval arrays.
     observers : sequence of Observer, default ()
-        They watch the trace.
+        Watch the trace.
     state : State, default None
         Resume from here; `continuation.archive.resume` reads it from a file.
     {options}
@@ -233,10 +233,6 @@ def follow(
     archive : path, default None
         New HDF5 file, one path a part; `continuation.archive.resume` continues the last part.
     {options}
-
-    Returns
-    -------
-    Followed
 
     Raises
     ------

@@ -40,7 +40,7 @@ class Row:
 
     @property
     def residual(self) -> float:
-        """The natural residual of x."""
+        """Natural residual of x."""
         return certify(self.example.problem, self.x).residual
 
     @property

@@ -1,6 +1,6 @@
 """The path archive: HDF5 files written during a trace, which `resume` continues exactly.
 
-An archive holds a table of points and one of paths. Each commit appends a checked block of rows and a checkpoint. Any
+An archive holds tables of points and of paths. Each commit appends a checked block of rows and a checkpoint. Any
 netCDF-4 tool (h5py, xarray) reads these files.
 """
 

@@ -28,7 +28,7 @@ class ArchiveError(OSError):
 
 
 class ArchiveExistsError(ArchiveError, FileExistsError):
-    """The file exists already; archives are never overwritten."""
+    """The file exists; archives are never overwritten."""
 
 
 @contextmanager
@@ -79,7 +79,7 @@ def as_file(argument: str, value: Any) -> File:
 
 
 def new_file(argument: str, value: Any) -> File:
-    """The path of a file that does not exist."""
+    """Path of a new file."""
     return check_new(as_file(argument, value))
 
 
@@ -102,7 +102,7 @@ def check_new(file: File) -> File:
 
 
 def exists(file: File) -> ArchiveExistsError:
-    """The error for a file that exists."""
+    """Error for an existing file."""
     return ArchiveExistsError(f"{file}: exists already, and is never overwritten; choose another name or remove it")
 
 

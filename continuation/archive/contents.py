@@ -81,7 +81,7 @@ class Contents:
             raise
 
     def close(self) -> None:
-        """Close the file for good."""
+        """Close the file."""
         self._release()
         self.closed = True
 
@@ -108,7 +108,7 @@ class Contents:
             time.sleep(_PAUSE)
 
     def damaged(self, error: BaseException) -> ArchiveError:
-        """The error for an unreadable file."""
+        """Error for an unreadable file."""
         if self._image is not None and self._image.failure:
             return ArchiveError(f"{self.file}: could not be read ({self._image.failure})")
         if isinstance(error, ArchiveError):
@@ -207,7 +207,7 @@ class Contents:
         return (*named, *(f"event {k}, whose name is lost" for k in range(len(named), count)))
 
     def table(self, name: str) -> Table:
-        """The committed rows of ``"point"`` or ``"path"``."""
+        """Committed rows of ``"point"`` or ``"path"``."""
         return Table(self.layout, name, self.committed.rows(name), partial(self.read, name))
 
     def read(self, table: str, column: Column, rows: slice) -> Array:

@@ -60,7 +60,7 @@ class Share:
 
     @property
     def size(self) -> int:
-        """The number of points."""
+        """Number of points."""
         return int(self.rows.stop - self.rows.start)
 
     @property
@@ -92,7 +92,7 @@ def share_of_path(path: Path, homotopy: Any = None, controller: Sequence[float] 
 
 
 def leading(shares: Sequence[Share]) -> Contents:
-    """The archive of the first point."""
+    """The first point's archive."""
     found = next((share for share in shares if share.size), shares[0]).origin
     assert found is not None
     return found

@@ -103,7 +103,7 @@ def scalars(homotopy: Any) -> dict[str, float]:
 
 
 def stored_parameters(attributes: Mapping[str, Any]) -> dict[str, Any]:
-    """The archive's parameters without large arrays."""
+    """Archive parameters without large arrays."""
     found = {}
     with suppress(ValueError, AttributeError):
         tree = json.loads(str(attributes.get("parameters", "{}")))

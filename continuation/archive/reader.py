@@ -69,7 +69,7 @@ class Archive(Sequence[Path]):
 
     @cached_property
     def paths(self) -> Table:
-        """The path table, with a row for an unfinished path."""
+        """The path table, unfinished path included."""
         if len(self) == self._ended.size:
             return self._ended
         number, rows = self._ended.size, self.rows(self._ended.size)
@@ -179,7 +179,7 @@ class Archive(Sequence[Path]):
         return self.contents.guarded(lambda: Status(int(self.paths.some("status", slice(index, index + 1))[0])))
 
     def to_xarray(self) -> Any:
-        """The committed rows as an `xarray.Dataset`, equal to ``xarray.open_dataset(file)``."""
+        """Committed rows as an `xarray.Dataset`, equal to ``xarray.open_dataset(file)``."""
         return dataset(self.points, self.paths, self.event_names, self.layout.unknowns, self.attributes)
 
     def to_dataframe(self) -> Any:
@@ -189,7 +189,7 @@ class Archive(Sequence[Path]):
         return pandas.DataFrame(flat(self.points))
 
     def checkpoint(self) -> Checkpoint | None:
-        """The latest point to resume the last path from, or None."""
+        """Latest point to resume the last path from, or None."""
         valid = []
         for found in filter(None, map(unpack, self.contents.slots())):
             # A checkpoint precedes the commit of its rows.
@@ -230,7 +230,7 @@ def open_archive(file: str | PathLike[str], *, limit: int | None = None) -> Arch
 
 
 class StoredSteps(Sequence[Step]):
-    """Steps of a path: the ends and the uncommitted ones are in memory, the others in the file.
+    """Steps of a path: ends and uncommitted ones in memory, the others in the file.
 
     Segments need stored tangents.
     """

@@ -70,7 +70,7 @@ def resume(
         A new file; default: `file`.
     observers : tuple of Observer
     trust : sequence of class or function
-        Objects the file may make, besides the library's and registered homotopies.
+        Objects the file may make besides the library's and registered homotopies.
     keep : str
         As for `PathLog`.
     {options}

@@ -243,10 +243,6 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         Parameters
         ----------
         rows : slice
-
-        Returns
-        -------
-        dict of str to ndarray
         """
         return {name: self.some(name, rows) for name in self.columns}
 
@@ -257,10 +253,6 @@ class Table(Mapping[str, "np.ndarray[Any, Any]"]):
         ----------
         name : str
         rows : slice
-
-        Returns
-        -------
-        ndarray
         """
         start, held = self._read.get(name, (0, None))
         if held is None or not start <= rows.start <= rows.stop <= start + len(held):

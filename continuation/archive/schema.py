@@ -151,7 +151,7 @@ class Layout:
     more: frozenset[str] = LATER
 
     def columns(self, table: str) -> tuple[Column, ...]:
-        """The columns of a table."""
+        """A table's columns."""
         return _columns(self.more, table)
 
     def own(self, prefix: str) -> tuple[str, ...]:
@@ -221,7 +221,7 @@ _CHUNK_BYTES = 1 << 13
 
 @lru_cache(maxsize=16)
 def empty(layout: Layout, compressed: bool) -> bytes:
-    """The bytes of a file without rows."""
+    """Bytes of a file without rows."""
     made = BytesIO()
     with h5py.File(made, "w", libver=LIBVER) as file:
         _build(file, layout, compressed)

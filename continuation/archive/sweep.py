@@ -72,8 +72,8 @@ def trace_many(
 ) -> Sequence[Path]:
     """Trace many homotopies, in order.
 
-    A homotopy that raises, kills its worker, exceeds the timeout or cannot be pickled costs one path, which becomes
-    RAISED with a message.
+    A homotopy that raises, kills its worker, exceeds the timeout or cannot be pickled gives a RAISED path with a
+    message.
 
     Parameters
     ----------

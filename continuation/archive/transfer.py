@@ -233,7 +233,7 @@ _SETTINGS = "predictor", "corrector", "controller", "metric", "target"
 
 
 def describe(archive: Archive) -> str:
-    """The text that ``continuation inspect`` prints.
+    """Text of ``continuation inspect``.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class Labels:
         return f"{name} [{self.units[name]}]" if name in self.units else name
 
     def index(self, name: str) -> int:
-        """The number of an unknown, -1 for the parameter."""
+        """Number of an unknown, -1 for the parameter."""
         if name in ("lam", self.parameter_name):
             return -1
         known = ", ".join(filter(None, ("lam", self.parameter_name, *self.names)))

@@ -35,7 +35,7 @@ BEFORE = 0.1
 
 @frozen(eq=False)
 class Audit:
-    """The result of a retrace.
+    """Result of a retrace.
 
     `same`: whether it passes every point in order and direction, with as many turning points and branch points.
     `first`: first missed step, or None.
@@ -88,7 +88,7 @@ def audit(
 ) -> Audit:
     """Check that the tracer stayed on one path: a retrace with steps half as long must pass the same points.
 
-    It misses the next point after a jump to another path, or over a loop. It takes about twice the trace's time.
+    It misses the next point after a jump, or over a loop. It takes about twice the trace's time.
 
     Parameters
     ----------
@@ -101,10 +101,6 @@ def audit(
         As in the trace; points may differ by a thousand times as much.
     backwards : bool
         Retrace from end to start: jumps rarely occur both ways.
-
-    Returns
-    -------
-    Audit
 
     Raises
     ------
@@ -236,7 +232,7 @@ def _missed(path: Path, k: int, retraced: Path) -> str:
 
 
 def refine(homotopy: Any, path: Path, s: float, tolerance: float | Tolerance = 1e-8) -> Array:
-    """The point of the path at arclength s, corrected to round-off.
+    """The path's point at arclength s, corrected to round-off.
 
     Parameters
     ----------

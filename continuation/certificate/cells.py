@@ -121,7 +121,7 @@ class Slabs:
     def cubic(self) -> Ends:
         """Coefficients q of p(middle + x) = sum_k q_k x^k, shape (slabs, 4, N + 1).
 
-        They are computed from the nearer node, where the other node then adds no round-off.
+        They are computed from the nearer node, where the other adds no round-off.
         """
         cells, later = self.cells, self.middle[:, None] > 0.5
         sign, m = np.where(later, -1.0, 1.0), self.middle[:, None]

@@ -66,12 +66,8 @@ def certify(path: Path, homotopy: Any) -> Proof:
     path : Path
         Traced, or read from an archive.
     homotopy : Homotopy
-        The traced homotopy. Its residual must run on interval arrays, unless it has its own bounds
-        (`SupportsProofEngine`), like LCP homotopies.
-
-    Returns
-    -------
-    Proof
+        As traced. Its residual must run on interval arrays, unless it has its own bounds (`SupportsProofEngine`), like
+        LCP homotopies.
 
     Raises
     ------
@@ -210,7 +206,7 @@ class SupportsWrittenOut(Protocol):
     """A homotopy that eliminates unknowns by factorisations."""
 
     def written_out(self, points: Array) -> Any:
-        """The homotopy with all unknowns, or None.
+        """Homotopy with all unknowns, or None.
 
         Its `lifted(u, before)` puts the further unknowns in front of u, near those of `before`.
 

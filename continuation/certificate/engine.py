@@ -90,12 +90,7 @@ class SupportsProofEngine(Protocol):
     """A homotopy with bounds cheaper than interval arithmetic."""
 
     def proof_engine(self) -> Engine:
-        """The engine.
-
-        Returns
-        -------
-        Engine
-        """
+        """The engine."""
         ...
 
 

@@ -116,7 +116,7 @@ class Proof:
         return evolve(self.cells, **rows)
 
     def of_width(self, width: int) -> Proof:
-        """The proof with the path's `width` (N + 1).
+        """The proof with `width` N + 1.
 
         Parameters
         ----------
@@ -132,10 +132,6 @@ class Proof:
         ----------
         s : float
             Arclength.
-
-        Returns
-        -------
-        ndarray
         """
         place = self.cells.place
         inside = np.flatnonzero((place[:, 0] <= s) & (s <= place[:, 1]))

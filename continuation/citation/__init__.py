@@ -24,17 +24,12 @@ class Traced(Protocol):
 
 
 def cite(source: Any) -> str:
-    """BibTeX of the library, the methods that a traced path used, and its homotopy's sources.
+    """BibTeX of the library, the methods that a traced path used, and its homotopy's sources, each once.
 
     Parameters
     ----------
     source : Path or Homotopy
         A homotopy gives only its own references.
-
-    Returns
-    -------
-    str
-        Entries, each once.
 
     Raises
     ------
@@ -77,6 +72,6 @@ def unique(found: tuple[str, ...]) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def key(entry: str) -> str:
-    """The citation key, or the entry itself."""
+    """Citation key, or the entry itself."""
     found = _KEY.search(entry)
     return found.group(1) if found else entry

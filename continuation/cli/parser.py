@@ -73,7 +73,7 @@ def paint(text: str, good: bool, stream: TextIO | None = None) -> str:
 
 
 def parsed(text: str, convert: Callable[[str], T], fine: Callable[[T], bool], expected: str) -> T:
-    """The value of an argument."""
+    """An argument's value."""
     try:
         value = convert(text)
         if fine(value):

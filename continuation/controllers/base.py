@@ -93,10 +93,6 @@ class Bounds:
         Parameters
         ----------
         h : float
-
-        Returns
-        -------
-        float
         """
         return min(h, self.maximum)
 
@@ -142,9 +138,5 @@ class Controller(Protocol):
         ----------
         state : tuple of float
         attempt : StepMeasures
-
-        Returns
-        -------
-        Decision
         """
         ...

@@ -56,15 +56,11 @@ class Correction:
         return self.rejection is None
 
     def rejected(self, h: float) -> Rejected | None:
-        """The failure of a step of length h, or None.
+        """Failure of a step of length h, or None.
 
         Parameters
         ----------
         h : float
-
-        Returns
-        -------
-        Rejected or None
         """
         return None if self.rejection is None else Rejected(h, self.rejection, self.detail, self.contraction)
 

@@ -51,7 +51,7 @@ class Calculus:
         return DifferentiableHomotopy(homotopy, evolve(self.derivative, residual=homotopy.residual))
 
     def evaluator(self, mu: float) -> Evaluator:
-        """The evaluator of the homotopy at mu."""
+        """Evaluator of the homotopy at mu."""
         return Evaluator(self.member(mu), Counts())
 
     @cached_property

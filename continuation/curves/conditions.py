@@ -63,7 +63,7 @@ class Eigenvalue:
         return null_vectors(self.matrix(full, omega), self.b, self.c)
 
     def null_vector(self, u: Array) -> Array:
-        """The null vector, of unit length in extents."""
+        """Null vector, of unit length in extents."""
         member, beside = np.split(u[:-1], [self.calculus.extent.size])
         full = full_derivative(self.calculus.evaluator(float(u[-1])), member)
         right = self.near(full, float(beside.sum())).right

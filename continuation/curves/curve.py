@@ -26,7 +26,7 @@ from continuation.linear import BorderedSystem
 from continuation.status import Kind
 
 POINTS_KEPT = 6
-"""Points and members kept: they are needed again."""
+"""Points and members kept for reuse."""
 
 
 @frozen(eq=False, slots=False, init=False)
@@ -233,7 +233,7 @@ class Curve:
         return self._at(y, lam).times(v)
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The bordered derivative, factored by elimination."""
+        """Bordered derivative, factored by elimination."""
         return self._at(y, lam).bordered(border)
 
     def _at(self, y: Array, lam: float) -> CurvePoint:

@@ -13,7 +13,7 @@ from continuation.arguments.checks import complain
 
 @frozen(eq=False)
 class Family:
-    """The homotopies that differ from a given one in one attribute.
+    """Homotopies that differ in one attribute.
 
     ``Family(homotopy, "eps")`` maps mu to the homotopy whose `eps` is mu: attrs objects are made anew, others copied
     shallowly. It can be archived. Derivatives by mu come from jets if residual and class accept them, else from

@@ -84,7 +84,7 @@ class CurvePoint:
         return np.append(H, rows @ v)
 
     def bordered(self, border: Array) -> BorderedSystem:
-        """The bordered derivative, by elimination of y.
+        """Bordered derivative, by elimination of y.
 
         With the member's factors of F = [[H_y, b], [c', d]] and a new unknown sigma, the equations are F (y, s) = (r,
         sigma), s = 0, conditions and border.

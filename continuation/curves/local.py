@@ -29,7 +29,7 @@ class Tangential:
         return cls(calculus, t / float(np.linalg.norm(t)) / calculus.extent)
 
     def factored(self, u: Array, mu: float) -> tuple[Any, Array]:
-        """The family's factorisation, and the oriented unit kernel."""
+        """Factorisation by the family, and oriented unit kernel."""
         extent, row = self.calculus.extent, self.row
         evaluator = self.calculus.evaluator(mu)
         for _ in range(REFRESHED):

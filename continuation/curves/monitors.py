@@ -86,7 +86,7 @@ def plainly(event: Any) -> Callable[[Any, Any], Any]:
 
 
 def gradient_of(function: Callable[[Any], Any], x0: Array) -> Callable[[Array], Array]:
-    """The gradient by jets or differences."""
+    """Gradient by jets or differences."""
     from continuation import jets
 
     def at(x: Array, last: float) -> Array:

@@ -101,7 +101,7 @@ class Diagram:
         return [branch.path for branch in self.branches]
 
     def of_kind(self, kind: Kind) -> list[Special]:
-        """The points of a kind.
+        """Points of a kind.
 
         Parameters
         ----------
@@ -131,10 +131,6 @@ class Diagram:
             Name the points.
         **options
             As for `plot_bifurcation`.
-
-        Returns
-        -------
-        Axes
         """
         drawn = [evolve(path, events=[e for e in path.events if e.kind in LABELS]) for path in self.paths]
         axes = plot_bifurcation(drawn, axes, value=value, **{"legend": False, **options})

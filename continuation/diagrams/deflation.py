@@ -114,7 +114,7 @@ class Deflated:
         return np.asarray(value * (H_y @ v[:-1] + np.asarray(H_lam) * v[-1] + H * float(slope @ v[:-1])))
 
     def bordered(self, y: Array, lam: float, border: Array) -> BorderedSystem:
-        """The homotopy's bordered matrix, factored, with a rank-one change (Sherman and Morrison).
+        """The bordered matrix, factored, with a rank-one change (Sherman and Morrison).
 
         If half of the digits cancel, the whole matrix is factored.
         """

@@ -42,7 +42,7 @@ class Junction:
 
     @classmethod
     def at(cls, homotopy: Any, event: LocatedEvent, step: float) -> Junction:
-        """The junction of an event, with starts on the other rays."""
+        """An event's junction, with starts on other rays."""
         weights = metric_at(event)
         try:
             if event.kind == Kind.SINGULAR_POINT:

@@ -89,7 +89,7 @@ class BranchSearch:
 
     @property
     def found(self) -> Diagram:
-        """The diagram so far."""
+        """Diagram so far."""
         said = "; ".join(dict.fromkeys(self.missing))
         said = f"Not complete: {said}." if said else "Complete: nothing is left open."
         return Diagram(self.branches, points_of(self.branches, self.junctions), not self.missing, said, self.counts)

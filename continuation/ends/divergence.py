@@ -45,7 +45,7 @@ Monitor = tuple[float, ...]
 def divergence(
     monitor: Monitor, point: Linearization, origin: Knot, evaluator: Evaluator, stops: Sequence[tuple[int, float]]
 ) -> tuple[Monitor, str]:
-    """Update the monitor with a point; also return the sentence that names the infinity, or "".
+    """Update the monitor with a point; return the sentence that names the infinity, or "".
 
     `monitor`, empty at first: the parameter's way; the distance to the limit at which predictions began to hold, or 0;
     parameter and slope at up to three marks. `stops`: pairs (component, value) that end the path; one on the way
@@ -104,7 +104,7 @@ def _met_further(
 
 
 def beyond_horizon(u: Array) -> str:
-    """The size of a point beyond HORIZON, as text, or ""."""
+    """Size of a point beyond HORIZON, as text, or ""."""
     return f"numbers of {largest(u):.0e}" if largest(u) >= HORIZON else ""
 
 

@@ -48,7 +48,7 @@ AMPLIFICATION = 0.3, 10.0
 weights at t = 0."""
 
 EQUALLY_GOOD = 10.0
-"""The smallest winding number within this factor of the best error wins: its multiples fit, too."""
+"""The smallest winding number within this factor of the best error wins: its multiples fit."""
 
 AT_PARAMETER = BorderedNewton(max_iterations=12, max_contraction=MONOTONE)
 """Newton's method is linear near a singular end."""
@@ -147,7 +147,7 @@ class Endgame:
         return residual <= RESIDUAL_RATIO * moved + ROUND_OFF_SPREAD * round_off
 
     def _track(self, here: Linearization, guess: Array, lam: float, noisy: bool) -> tuple[Linearization, Array] | None:
-        """The point at a parameter value, and its noise.
+        """Point at a parameter value, and its noise.
 
         If `noisy`, an increment below the tolerance is accepted as noise.
         """

@@ -126,7 +126,7 @@ def _looked_for(residual: Residual, u: Array) -> Pattern | None:
 
 
 def given_pattern(sparsity: Any, n: int) -> Pattern:
-    """The pattern of a homotopy's `sparsity`."""
+    """Pattern of a homotopy's `sparsity`."""
     try:
         places = sp.coo_array(sparsity)
     except (TypeError, ValueError):

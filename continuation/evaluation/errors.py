@@ -26,6 +26,6 @@ class SingularPointError(EvaluationError):
 
 
 def unevaluated(what: str, error: BaseException) -> EvaluationError:
-    """The `EvaluationError` for an exception of the homotopy."""
+    """`EvaluationError` for the homotopy's exception."""
     # A homotopy that wraps another passes it on.
     return error if isinstance(error, EvaluationError) else NotFiniteError(f"the {what} raised: {error}")

@@ -94,7 +94,7 @@ class Evaluator:
             self.bind(WholeMap(homotopy, self.start()))
 
     def bind(self, homotopy: Any) -> None:
-        """Evaluate this homotopy from now on; `TypeError` if a method is missing."""
+        """Evaluate this homotopy; `TypeError` if a method is missing."""
         for name in ("start", "residual"):
             if not callable(getattr(homotopy, name, None)):
                 raise TypeError(f"homotopy: expected a method `{name}`, found none on {type(homotopy).__name__}")
@@ -128,7 +128,7 @@ class Evaluator:
         return u
 
     def start(self) -> Array:
-        """The checked start (y0, lam0) as one vector."""
+        """Checked start (y0, lam0) as one vector."""
         u = self._given()
         y0 = u[:-1]
         self._sparsity(y0.size)
@@ -165,7 +165,7 @@ class Evaluator:
         return r
 
     def residual_norm(self, u: Array) -> float:
-        """The largest component of H(u), or nan."""
+        """Largest component of H(u), or nan."""
         try:
             return largest(self.residual(u))
         except EvaluationError:

@@ -60,10 +60,6 @@ def check_jacobian(homotopy: Any, u: Array | None = None) -> JacobianReport:
     u : ndarray, shape (N + 1,), optional
         Default: the start and a point near it, as zeros can hide mistakes.
 
-    Returns
-    -------
-    JacobianReport
-
     Raises
     ------
     TypeError
@@ -114,7 +110,7 @@ def _check(evaluator: Evaluator, u: Array) -> JacobianReport:
 
 
 def _reference(residual: Residual, u: Array, probe: Array) -> tuple[str, Product]:
-    """The best product that agrees with differences."""
+    """Best product that agrees with differences."""
     products = exact(residual, u, probe)
     if products is None:
         return "differences", lambda w: difference_along(residual, u, w)[0]

@@ -112,12 +112,12 @@ class Pattern:
         return Banded(ab, lower, upper)
 
     def joined(self, other: Pattern) -> Pattern:
-        """The union of two patterns."""
+        """Union of two patterns."""
         return pattern_of(np.append(self.rows, other.rows), np.append(self.columns, other.columns), self.n)
 
 
 def pattern_of(rows: Any, columns: Any, n: int) -> Pattern:
-    """The pattern of these entries, sorted, without repetition."""
+    """Pattern of these entries, sorted, without repetition."""
     columns, rows = np.divmod(np.unique(np.asarray(columns, np.intp) * n + np.asarray(rows, np.intp)), n)
     return Pattern(rows, columns, n)
 

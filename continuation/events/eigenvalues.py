@@ -56,7 +56,7 @@ def changes(
 
 
 def multiplicity(a: Linearization, apply: Callable[[Array], Array], border: Array, place: float) -> int:
-    """The ranks that H' loses at a parameter `place` of `changes`.
+    """Ranks that H' loses at a parameter `place` of `changes`.
 
     A Krylov space holds one vector of each eigenspace, so several starts serve.
     """

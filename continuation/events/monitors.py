@@ -56,10 +56,6 @@ class Event(Protocol):
             A point (y, lam).
         v : ndarray, shape (N + 1,)
             Unit tangent.
-
-        Returns
-        -------
-        float
         """
         ...
 
@@ -107,7 +103,7 @@ class TargetValue:
 
     @property
     def name(self) -> str:
-        """The condition as text."""
+        """Condition as text."""
         what = "lam" if self.component == -1 else f"component {self.component}"
         return f"{what} = {self.value:g}"
 

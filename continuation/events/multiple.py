@@ -240,6 +240,6 @@ def still(v: Array, weights: Array) -> Array:
 
 
 def without_noise(u: Array, way: Array, weights: Array) -> Array:
-    """The point u + way without round-off."""
+    """Point u + way without round-off."""
     there = u + still(way, weights)
     return np.where(np.abs(there) * np.sqrt(weights) > BACKWARD_ERROR, there, 0.0)

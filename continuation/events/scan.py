@@ -12,7 +12,7 @@ from continuation.events import Event, KinkPoint, TargetValue
 from continuation.events.branch_point import BranchPoint
 from continuation.events.locate import may_vanish, on_value, zeros
 from continuation.point.arc import Arc, position
-from continuation.point.linearization import REFINED, Linearization
+from continuation.point.linearization import Linearization
 from continuation.point.projection import PathSolver
 
 SOUGHT_ELSEWHERE = (BranchPoint, KinkPoint)
@@ -75,8 +75,7 @@ def scan_events(
         resolution = getattr(event, "resolution", None)
         if resolution is not None:
             if noise is None:
-                # A component that stands still may have the error REFINED of the whole tangent.
-                noise = solver.noise_by_component(arc.a) + REFINED * arc.length / np.sqrt(arc.a.weights)
+                noise = solver.noise_by_component(arc.a) + arc.length * (solver.tangent_noise(arc.a) + solver.tangent_noise(arc.b))
             # Round-off at both ends is no crossing.
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue

@@ -43,7 +43,7 @@ class Way:
 
 
 def way(S: Array, r: Array) -> Way | None:
-    """The basis behind the corner, by pivots with perturbed switches, or None.
+    """Basis behind the corner, by pivots with perturbed switches, or None.
 
     The perturbation, like a lexicographic rule, resolves ties (Cottle, Pang and Stone, section 4.9).
     """

@@ -55,7 +55,7 @@ class Corner:
     beta: tuple[int, ...]
 
     def signs_with(self, of_beta: Sequence[int]) -> Signs:
-        """The signs with others for the vanishing switches."""
+        """Signs with others for the vanishing switches."""
         changed = list(self.signs)
         for j, sign in zip(self.beta, of_beta):
             changed[j] = sign

@@ -34,7 +34,7 @@ class Crossing:
 
     @property
     def name(self) -> str:
-        """The kind of the kink."""
+        """The kink's kind."""
         if self.onward is None:
             return "unresolved kink" if self.reason else "dead end"
         if len(self.rays) > 2:

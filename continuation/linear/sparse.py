@@ -13,7 +13,7 @@ from continuation.linear.system import BorderedSystem, SingularError, Solver
 
 
 def canonical(matrix: Matrix) -> Matrix:
-    """The matrix as csc, without duplicates."""
+    """Matrix as csc, without duplicates."""
     matrix = csc_array(matrix, dtype=float)
     if not matrix.has_canonical_format:
         matrix = matrix.copy()

@@ -54,7 +54,7 @@ class Spectrum:
 
     @property
     def rightmost(self) -> float:
-        """The largest real part."""
+        """Largest real part."""
         return float(self.values[0].real)
 
     @property
@@ -79,7 +79,7 @@ class Spectrum:
 
 
 def spectrum(matrix: Matrix, side: int = 1, k: int | None = None) -> Spectrum:
-    """The eigenvalues of ``side * matrix`` that decide stability.
+    """Eigenvalues of ``side * matrix`` that decide stability.
 
     Small matrices: all, by QR. Others: the k (default 6) nearest to a shift, by Arnoldi's method on the inverse
     (Govaerts, Numerical Methods for Bifurcations, Section 5.3); the count is complete if their disc covers the right

@@ -20,7 +20,7 @@ class Cholesky:
 
     @property
     def least_pivot(self) -> float:
-        """The least pivot of A."""
+        """Least pivot of A."""
         return least(self.lower.diagonal()) ** 2 / self.factor
 
     @property

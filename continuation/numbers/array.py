@@ -96,7 +96,7 @@ class Jet(Truncated):
 
     @property
     def order(self) -> int:
-        """The highest power of s."""
+        """Highest power of s."""
         return len(self.c) - 1
 
     def __repr__(self) -> str:

@@ -66,10 +66,6 @@ def jacobian(f: Callable[[Any], Any], lo: Any, hi: Any = None) -> Interval:
         As in `enclose`.
     lo, hi : array_like, shape (m,)
 
-    Returns
-    -------
-    Interval
-
     Raises
     ------
     TypeError, UndecidedError

@@ -18,7 +18,7 @@ BLOCK = 128
 
 
 def variable(x0: Any, direction: Any, order: int) -> Jet:
-    """The line x0 + s * direction as a jet.
+    """Line x0 + s * direction as a jet.
 
     Parameters
     ----------

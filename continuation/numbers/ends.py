@@ -138,7 +138,7 @@ class Ends:
         return np.maximum(up_sum(self.hi - middle), up_sum(middle - self.lo))
 
     def magnitude(self) -> Array:
-        """The largest absolute value."""
+        """Largest absolute value."""
         return np.maximum(np.abs(self.lo), np.abs(self.hi))
 
 
@@ -181,7 +181,7 @@ def absolute_range(u: Ends) -> Ends:
 
 
 def whole_power(u: Ends, n: int) -> Ends:
-    """The range of x**n, for n >= 0."""
+    """Range of x**n, n >= 0."""
     if n == 0:
         return thin(np.ones(u.shape)).where(~np.isnan(u.lo))
     if n % 2 == 0:

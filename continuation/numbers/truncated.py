@@ -223,7 +223,7 @@ def gather(x: Any, one: str = "an array of series") -> Any:
 
 
 def common(operands: Any) -> Algebra:
-    """The algebra of all non-constant operands."""
+    """Algebra of all non-constant operands."""
     first = operands[0]
     for x in operands[1:]:
         if len(first.c) == 1:

@@ -57,7 +57,7 @@ def _cubic(a: Step, b: Step) -> Segment | None:
 
 
 def turned_round(steps: Sequence[Step], events: Sequence[LocatedEvent]) -> StepsAndEvents:
-    """The path from its end to its start."""
+    """The path from end to start."""
     old, last = list(steps), len(steps) - 1
     whole = old[-1].arclength if old else 0.0
     # At a kink, the tangent is the arriving arc's.

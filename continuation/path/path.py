@@ -207,10 +207,6 @@ class Path:
         Parameters
         ----------
         t : float
-
-        Returns
-        -------
-        ndarray
         """
         found = [step.u for step in self.steps[:1] if step.lam == t]
         for before, after in pairwise(self.steps):
@@ -239,7 +235,7 @@ class Path:
         return segment.at(fraction if weights is None else parameter_at(segment, weights, fraction))
 
     def reversed(self) -> Path:
-        """The path from its end to its start."""
+        """The path from end to start."""
         return self._of(turned_round(self.steps, self.events))
 
     def join(self, other: Path) -> Path:

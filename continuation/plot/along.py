@@ -91,10 +91,6 @@ def plot_profiles(
     x : array_like, shape (N,), optional
         Positions; default: numbers of the unknowns.
 
-    Returns
-    -------
-    Axes
-
     Raises
     ------
     ImportError, ValueError

@@ -53,10 +53,6 @@ def plot_bifurcation(
         One per path.
     legend : bool
 
-    Returns
-    -------
-    Axes
-
     Raises
     ------
     ImportError, ValueError
@@ -77,7 +73,7 @@ def plot_bifurcation(
 
 
 def at_event(event: Any, path: Drawn, value: Value) -> float:
-    """The drawn number at an event of `path`."""
+    """Drawn number at an event of `path`."""
     measured = _measured(path, value)
     return float(event.observed.get(value, np.nan)) if measured is None else measured(event.u)
 

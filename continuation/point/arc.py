@@ -48,7 +48,7 @@ class Arc:
 
 
 def cut(arc: Arc, end: Linearization) -> Arc:
-    """The arc up to a point."""
+    """Arc up to a point."""
     if isinstance(arc.segment, SeriesSegment):
         return Arc(arc.a, end, arc.border, arc.segment.until(position(arc, end.u), end.u))
     return cubic_between(arc.a, end, arc.border)

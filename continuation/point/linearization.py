@@ -229,7 +229,7 @@ def with_exact_solves(evaluator: Evaluator, point: Linearization) -> Linearizati
 
 
 def factored(evaluator: Evaluator, point: Linearization) -> Linearization:
-    """The point with its own factorisation."""
+    """The point, newly factored."""
     return evolve(point, anchor=linearize(evaluator, point.u, point.weights, point.border).anchor)
 
 

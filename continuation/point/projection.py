@@ -15,7 +15,7 @@ from continuation.evaluation.evaluator import POINT_ULPS, Evaluator
 from continuation.evaluation.noise import NOISE_LOOKS
 from continuation.metric import norm
 from continuation.point.arc import Arc
-from continuation.point.linearization import Anchor, Linearization, relinearize
+from continuation.point.linearization import REFINED, Anchor, Linearization, relinearize
 from continuation.point.segment import PolynomialSegment
 from continuation.tolerance import Tolerance
 
@@ -129,6 +129,14 @@ class PathSolver:
             return last_place
         left = back - moved + near.tangent * dot(near.border, moved)
         noise: Array = NOISE_LOOKS * np.abs(left) + last_place
+        return noise
+
+    def tangent_noise(self, point: Linearization) -> Array:
+        """Round-off of a tangent by component, shape (N + 1,): what its refinement and another correction leave."""
+        noise: Array = REFINED / np.sqrt(point.weights)
+        apply = self.evaluator.differential(point.u)
+        if apply is not None:
+            noise = noise + NOISE_LOOKS * np.abs(point.approximate(-apply(point.tangent)))
         return noise
 
     def project_and_linearize(

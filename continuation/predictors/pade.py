@@ -84,7 +84,7 @@ def approximant(coefficients: Array, weights: Array) -> Series:
 
 @without_warnings(all="ignore")
 def best(series: Array, weights: Array, accuracy: float, series_reach: float, safety: float) -> Series | None:
-    """The approximant with the longest range, or None.
+    """Approximant with the longest range, or None.
 
     In the range successive orders agree and have no pole. A pole of one order alone is an artefact (Froissart doublet).
     """
@@ -114,7 +114,7 @@ def _agreement(
 
 
 def first_pole(denominator: Array) -> float:
-    """The smallest positive real root of the denominator, or inf."""
+    """The denominator's smallest positive real root, or inf."""
     roots = np.polynomial.polynomial.polyroots(np.trim_zeros(denominator, "b"))
     real = roots.real[np.abs(roots.imag) <= ROOT_OF_ROUND_OFF * np.abs(roots)]
     return float(real[real > 0.0].min(initial=np.inf))

@@ -275,7 +275,7 @@ class _Looks:
         return largest(evaluator.residual(u) / rows) <= ON_PATH or not far_from_round_off(evaluator, u)
 
     def simple(self, guess: Array) -> BranchPointOnArc | None:
-        """The simple branch point near the arc, by Newton's method."""
+        """Simple branch point near the arc, by Newton's method."""
         arc, a = self.arc, self.arc.a
         try:
             units = self._units()

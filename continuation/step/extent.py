@@ -178,7 +178,7 @@ def _smaller(evaluator: Evaluator, point: Linearization, z: Array, residual: Arr
 
 
 def _without_round_off(evaluator: Evaluator, point: Linearization, v: Array, residual: Array) -> Array:
-    """The tangent, with zeros for round-off.
+    """Tangent, with zeros for round-off.
 
     A tiny component may have another unit: refinement by H' nearby tells.
     """

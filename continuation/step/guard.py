@@ -15,18 +15,13 @@ class Guard(Protocol):
     """
 
     def __call__(self, arc: Arc, /) -> str | None:
-        """Return why the arc does not count.
+        """Return why the arc does not count, or None.
 
         Parameters
         ----------
         arc : Arc
             Ends `arc.a`, `arc.b` have `u`, `y`, `lam`, `tangent`, `weights`; `arc.samples` are points and tangents
             between.
-
-        Returns
-        -------
-        str or None
-            The reason, if any.
         """
         ...
 

@@ -43,7 +43,7 @@ class PartOptions(TypedDict, total=False):
     events : sequence of Event, default ()
         Added to the homotopy's, turning points and branch points.
     guards : sequence of Guard, default ()
-        Functions that take an arc and return a reason to reject it, or None; the step is then shortened. Not archived.
+        Functions that return a reason to reject an arc, or None; the step is then shortened. Not archived.
     check_jacobian : bool, default False
         Compare Jacobian and residual at the start; a wrong entry is a ValueError.
     examine : bool, default True

@@ -83,7 +83,7 @@ class StepRecorder:
         return [evolve(event, observed=self.observe(event.y, event.lam)) for event in events]
 
     def end(self, point: Linearization, state: State, u: Array) -> Step:
-        """The record of an end that no step reached."""
+        """Record of an end that no step reached."""
         chord = u - point.u
         length = norm(point.weights, chord)
         end = evolve(point, u=u, tangent=chord / length if length > 0.0 else point.tangent)

@@ -105,7 +105,7 @@ def at_parameter(solver: PathSolver, u: Array) -> Array:
 def measured(
     solver: PathSolver, point: Linearization, metric: Metric, target: float | None, residual: Array
 ) -> tuple[Linearization, Array]:
-    """The start in the trace's metric, and its extent.
+    """Start in the trace's metric, and its extent.
 
     Noise of H raises the tolerance, and the extents of noisier components.
     """

@@ -117,7 +117,7 @@ class Subject:
 
     @cached_property
     def first(self) -> Linearization:
-        """The first point of the path."""
+        """The path's first point."""
         metric = self.homotopy.metric if self.has("metric") else Automatic()
         target = getattr(self.homotopy, "target", 0.0)
         with reporting("start", "linearized"):

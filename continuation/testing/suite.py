@@ -82,7 +82,7 @@ class Result:
 
 
 def homotopy_checks(homotopy: Any, *, steps: int | None = None) -> tuple[Check, ...]:
-    """The checks that the homotopy's capabilities select.
+    """Checks that the homotopy's capabilities select.
 
     Only checks call the homotopy, so a fault fails its tests, not their collection::
 
@@ -113,10 +113,6 @@ def run_checks(
     expected_failed_checks : mapping of str to str, optional
     steps : int, optional
         As for `check_homotopy`.
-
-    Returns
-    -------
-    tuple of Result
 
     Raises
     ------
@@ -159,10 +155,6 @@ def check_homotopy(
         Checks known to fail, and why.
     steps : int, optional
         As for `homotopy_checks`.
-
-    Returns
-    -------
-    tuple of Result
 
     Raises
     ------

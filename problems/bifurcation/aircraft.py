@@ -53,7 +53,7 @@ class Aircraft:
     references: ClassVar[tuple[str, ...]] = (MELHEM_RHEINBOLDT, RHEINBOLDT_BURKARDT)
 
     def start(self) -> tuple[Array, float]:
-        """The equilibrium at aileron 0, by Newton from level flight.
+        """Equilibrium at aileron 0, by Newton from level flight.
 
         Raises
         ------

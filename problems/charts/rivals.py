@@ -164,7 +164,7 @@ FOLLOWERS: dict[str, tuple[str, Follow]] = {
 
 
 def curve_followers(compare: bool) -> list[Method]:
-    """The plain loop, and the packages that are installed if `compare`."""
+    """The plain loop, and installed packages if `compare`."""
     taken = {name: one for name, one in FOLLOWERS.items() if not one[0] or (compare and installed(one[0]))}
     return [Method(name, partial(_follow, follow), outside=True) for name, (_, follow) in taken.items()]
 

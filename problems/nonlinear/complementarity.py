@@ -73,7 +73,7 @@ class MixedComplementarity:
 
     @property
     def n(self) -> int:
-        """The number of unknowns."""
+        """Number of unknowns."""
         return int(self.lower.size)
 
     def slope(self, x: Array) -> Matrix:
@@ -88,7 +88,7 @@ class MixedComplementarity:
         return np.asarray(jets.jacobian(self.F, x))
 
     def linearized(self, x: Array) -> MixedLCP:
-        """The affine problem with the F and F' of x.
+        """The affine problem with F and F' of x.
 
         Parameters
         ----------

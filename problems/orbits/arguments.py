@@ -18,7 +18,7 @@ DEGREES = integer(2, 12)
 
 @frozen
 class Asked:
-    """The checked grid size and first radius."""
+    """Checked grid size and first radius."""
 
     intervals: int = field(validator=integer(2))
     degree: int = field(validator=DEGREES)
@@ -26,7 +26,7 @@ class Asked:
 
     @property
     def grid(self) -> Grid:
-        """The grid of equal intervals."""
+        """Grid of equal intervals."""
         return Grid(np.linspace(0.0, 1.0, self.intervals + 1), self.degree)
 
 

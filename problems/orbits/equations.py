@@ -41,7 +41,7 @@ class Equations:
         return grid, y[:size].reshape(self.states.shape), float(y[size])
 
     def here(self, y: Array, lam: float) -> Here:
-        """The equations at a point, cached."""
+        """Cached equations at a point."""
         return self._at(np.append(y, lam).tobytes())
 
     @cached_property

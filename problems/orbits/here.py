@@ -42,7 +42,7 @@ class Here:
 
     @cached_property
     def flow(self) -> Array:
-        """The vector field, shape (N, m, n)."""
+        """Vector field, shape (N, m, n)."""
         return np.asarray(self.field(self._columns, self.p), dtype=float).T.reshape(self._values.shape)
 
     @cached_property

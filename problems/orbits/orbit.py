@@ -101,7 +101,7 @@ class PeriodicOrbit:
     def from_hopf(
         cls, f: Any, point: Any, *, radius: float = 1e-2, intervals: int = 20, degree: int = 4, **beside: Any
     ) -> PeriodicOrbit:
-        """The small orbit near a Hopf point; trace from `leaving`.
+        """Small orbit near a Hopf point; trace from `leaving`.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class PeriodicOrbit:
 
     @classmethod
     def from_point(cls, f: Any, point: Any, components: int, *, degree: int = 4, **beside: Any) -> PeriodicOrbit:
-        """The orbit at a point of a path.
+        """Orbit at a path's point.
 
         Parameters
         ----------
@@ -277,7 +277,7 @@ class PeriodicOrbit:
         return self.equations.here(y, lam).multipliers
 
     def at(self, y: Array, t: Any) -> Array:
-        """The orbit at times of [0, 1], shape (len(t), n).
+        """Orbit at times of [0, 1], shape (len(t), n).
 
         Parameters
         ----------

@@ -67,7 +67,7 @@ def circle_at(field: Field, x: Array, p: float, grid: Grid) -> tuple[Array, Arra
     rate = dual[:, k].conj() / (np.vdot(dual[:, k], q) * abs(values[k]))
 
     def bent(r: float) -> Array:
-        """The nonlinear part of f at that radius, in radii."""
+        """Nonlinear part of f at that radius, in radii."""
         way = (q[:, None] * turned).real
         found: Array = (field(x[:, None] + r * way, p) - field(x[:, None], p)) / r - matrix @ way
         return found

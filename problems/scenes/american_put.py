@@ -106,7 +106,7 @@ def AmericanPut(
         return Exercise(values, times[: len(edges)], np.array(edges), bool(found.success))
 
     def edge(above: Array) -> float:
-        """The first price above the payoff."""
+        """First price above the payoff."""
         beyond = above > 1e-12 * strike
         return strike * exp(float(x[int(np.argmax(beyond)) + 1])) if beyond.any() else strike
 

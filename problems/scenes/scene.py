@@ -61,13 +61,13 @@ class Rival:
 
     @property
     def installed(self) -> bool:
-        """Whether the required module is there."""
+        """Whether the module is there."""
         return not self.module or find_spec(self.module) is not None
 
 
 @frozen(eq=False)
 class Scene:
-    """A question with parameters; any object with these attributes can be a scene.
+    """Any object with these attributes can be a scene.
 
     Attributes
     ----------

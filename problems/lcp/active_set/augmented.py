@@ -42,7 +42,7 @@ class Saddle:
 
     @classmethod
     def of(cls, problem: MixedLCP) -> Saddle | None:
-        """The program in the first `problem.primal` unknowns, or None."""
+        """Program in the first `problem.primal` unknowns, or None."""
         n, A = problem.primal, problem.A
         P, R, low, high = A[:n][:, :n], A[n:][:, :n], problem.lower[n:], problem.upper[n:]
         if n == 0 or not _same(P, P.T) or not _same(R.T, -A[:n][:, n:]) or abs(A[n:][:, n:]).sum() != 0.0:
@@ -86,7 +86,7 @@ class Penalised:
         return np.asfortranarray(self.saddle.P + penalised + np.diag(diagonal))
 
     def step(self, t: Array, dv: Array, slope: float, curvature: float) -> float:
-        """The zero of the piecewise linear derivative along a direction.
+        """Zero of the piecewise linear derivative along a direction.
 
         `t`: values plus multipliers over penalties, `dv`: their change.
         """

@@ -47,7 +47,7 @@ class Finish:
         return self.faces.problem
 
     def settle(self, state: State, policy: Policy, near: Array | None = None) -> Array | None:
-        """The certified solution on an active set or its corrections, or None."""
+        """Certified solution on an active set or its corrections, or None."""
         found = iterate(self.faces, state, policy, near=near, judge=self.judged, tried=self.tried, counts=self.counts)
         self.ended, self.following = found.ended, found.state
         return found.x if found.ended is Ended.SOLVED else None
@@ -76,7 +76,7 @@ class Finish:
         return None
 
     def augmented(self, exhausted: Callable[[], object]) -> Array | None:
-        """The solution of a convex program by `guesses`, or None."""
+        """Solution of a convex program by `guesses`, or None."""
         saddle = Saddle.of(self.problem)
         if saddle is None:
             return None

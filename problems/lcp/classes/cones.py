@@ -32,7 +32,7 @@ def columns(matrix: ExactMatrix, support: Indices) -> list[list[int]]:
 
 
 def embed(n: int, support: Indices, values: Sequence[Fraction]) -> Point:
-    """The vector of `values` on the support and zeros."""
+    """`values` on the support, else zeros."""
     known = dict(zip(support, values, strict=True))
     return tuple(known.get(i, Fraction(0)) for i in range(n))
 

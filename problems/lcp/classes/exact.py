@@ -51,7 +51,7 @@ class ExactMatrix:
 
     @staticmethod
     def of(A: Any) -> ExactMatrix:
-        """The exact value of a matrix of floats, ints or Fractions.
+        """Exact value of a matrix of floats, ints or Fractions.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ def indices(mask: int) -> Indices:
 
 
 def index_sets(n: int) -> Iterator[int]:
-    """The nonempty index sets as masks, small ones first."""
+    """Nonempty index sets as masks, small ones first."""
     return iter(sorted(range(1, 1 << n), key=lambda mask: (mask.bit_count(), mask)))
 
 

@@ -113,7 +113,7 @@ MOST_CASES = 4096
 
 
 def undecided(cases: int) -> Membership:
-    """The answer of a test with too many cases."""
+    """Answer of a test with too many cases."""
     return Membership(
         None, Evidence(f"the exact test is exponential in n and stops at {MOST_CASES} cases, found {cases}")
     )

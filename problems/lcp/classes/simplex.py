@@ -25,7 +25,7 @@ def at_most(row: Sequence[int], right: int = 0) -> Constraint:
 
 
 def exactly(constraints: Sequence[Constraint]) -> list[Constraint]:
-    """The constraints as equations, by an upper limit on their sum."""
+    """Constraints as equations, by an upper limit on their sum."""
     rows, rights = [row for row, _ in constraints], [right for _, right in constraints]
     return [*constraints, at_most([sum(column) for column in zip(*rows)], sum(rights))]
 

@@ -96,17 +96,17 @@ class MixedLCP:
 
     @cached_property
     def pieces(self) -> int:
-        """The number of complementary pieces."""
+        """Number of complementary pieces."""
         ends = np.isfinite(self.lower).astype(int) + np.isfinite(self.upper) - 2 * self.fixed
         return math.prod((ends + 1).tolist())
 
     @property
     def near_zero(self) -> Array:
-        """The point between the bounds nearest to zero, shape (n,)."""
+        """Point between the bounds nearest to zero, shape (n,)."""
         return self.clipped(np.zeros(self.n))
 
     def clipped(self, x: Array) -> Array:
-        """The nearest point between the bounds.
+        """Nearest point between the bounds.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ class MixedLCP:
         return _stated(low, np.where(inside, x >= self.upper, above & (w <= 0.0)))
 
     def at(self, state: State) -> Array:
-        """The bounds that a state imposes on x, zero between.
+        """Bounds that a state imposes on x, zero between.
 
         Parameters
         ----------
@@ -202,7 +202,7 @@ class MixedLCP:
         return float(np.max(abs(self.A).sum(axis=1), initial=0.0))
 
     def relative_residual(self, x: Array) -> float:
-        """The natural residual divided by `scale`.
+        """Natural residual divided by `scale`.
 
         Parameters
         ----------

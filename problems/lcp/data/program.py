@@ -52,7 +52,7 @@ class Program:
 
     @property
     def n(self) -> int:
-        """The number of variables."""
+        """Number of variables."""
         return int(self.c.size)
 
     @cached_property

@@ -61,7 +61,7 @@ class Scaled:
 
 
 def balanced(problem: MixedLCP) -> Scaled | None:
-    """The problem in balanced units, or None if unchanged.
+    """Problem in balanced units, or None if unchanged.
 
     References
     ----------

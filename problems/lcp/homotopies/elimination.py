@@ -157,7 +157,7 @@ class OfRows:
 
 
 def factor_rows(system: System, border: Array) -> BorderedSystem:
-    """The bordered system of the KKT homotopy; see `factor_pairs`."""
+    """The KKT homotopy's bordered system; see `factor_pairs`."""
     homotopy, (_, _, p, q, _) = system.of, system.parts
     rows, structure, n, m = homotopy.rows, homotopy.structure, homotopy.n, homotopy.rows.sides.index.size
     z1, gap, factor, rest = p[:m], q[:m], p[m : m + n], q[m : m + n]

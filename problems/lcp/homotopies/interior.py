@@ -140,7 +140,7 @@ def taylor(self: Any, point: Linearization, order: int) -> Array:
 
 
 def proof_engine(self: Any) -> ByProducts:
-    """The form of H for proofs of paths."""
+    """Form of H for path proofs."""
     return ByProducts(form(self))
 
 

@@ -123,7 +123,7 @@ class KKTHomotopy:
 
     @cached_property
     def own_metric(self) -> RelativeMetric:
-        """The metric of relative changes of distances."""
+        """Metric of relative changes of distances."""
         if self.problem.standard:
             return RelativeMetric()
         rows, m = self.rows, self.rows.sides.index.size
@@ -137,7 +137,7 @@ class KKTHomotopy:
 
     @cached_property
     def unit(self) -> float:
-        """The natural unit of w over that of x."""
+        """Natural unit of w over that of x."""
         x, w = natural_units(self.problem)
         return w / x
 
@@ -148,7 +148,7 @@ class KKTHomotopy:
 
     @cached_property
     def c(self) -> Array:
-        """The starting products of pairs, zero without a bound."""
+        """Starting products of pairs, zero without a bound."""
         _, _, p, q, _ = self.parts(*self.start())
         return np.where(self.signs == 0.0, 0.0, p * q)
 

@@ -35,7 +35,7 @@ def exact_end(problem: MixedLCP, x: Array) -> str:
 
 
 def form(homotopy: Any) -> Quadratic:
-    """The affine parts and the product of H."""
+    """Affine parts and product of H."""
     c, n = homotopy.c, homotopy.n
     size = n + c.size
     parts = [homotopy.parts(unit[:-1], unit[-1], 0.0) for unit in np.eye(size + 1)]

@@ -40,7 +40,7 @@ class Registered:
     bounds: bool = False
 
     def from_x0(self, problem: MixedLCP, x0: Array | None, structure: Structure) -> LCPHomotopy:
-        """The homotopy from x0 or its default."""
+        """Homotopy from x0 or its default."""
         return self.make(problem, x0, structure=structure)
 
     def at(self, problem: MixedLCP, start: Start, structure: Structure, refine: bool) -> LCPHomotopy:

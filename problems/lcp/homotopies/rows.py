@@ -32,7 +32,7 @@ class Rows:
 
     @cached_property
     def boxed(self) -> NDArray[np.intp]:
-        """The indices with two bounds."""
+        """Indices with two bounds."""
         return np.intersect1d(self.sides.low, self.sides.high)
 
     @cached_property
@@ -49,7 +49,7 @@ class Rows:
 
     @cached_property
     def end(self) -> Array | float:
-        """The reference bound of gaps: lower, else upper, else zero."""
+        """Reference bound of gaps: lower, else upper, else zero."""
         if self.problem.standard:
             return 0.0
         low, high = self.problem.lower, self.problem.upper
@@ -75,7 +75,7 @@ class Rows:
 
     @cached_property
     def ends(self) -> tuple[int, int, int]:
-        """The places where the blocks x, z1 and z2 of y end."""
+        """Ends of the blocks x, z1 and z2 of y."""
         n, m = self.problem.n, self.sides.index.size
         return n, n + m, n + m + n
 

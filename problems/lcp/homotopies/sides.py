@@ -49,7 +49,7 @@ class Sides:
         return 1.0 * free if free.any() else 0
 
     def gaps(self, x: Array) -> Array:
-        """The distances from the bounds."""
+        """Distances from the bounds."""
         if self.problem.standard:
             return x
         return np.concatenate([(x - self.problem.lower)[self.low], (self.problem.upper - x)[self.high]])

@@ -88,7 +88,7 @@ class TwoVectorHomotopy:
 
     @cached_property
     def own_metric(self) -> RelativeMetric:
-        """The metric of relative changes of forces and distances."""
+        """Metric of relative changes of forces and distances."""
         if self.problem.standard:
             return RelativeMetric()
         unit = natural_units(self.problem)[0]

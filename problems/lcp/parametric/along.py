@@ -65,7 +65,7 @@ def along(
     budget : continuation.Budget, optional
         Default 100,000 kinks.
     archive : path, optional
-        A new HDF5 file.
+        New HDF5 file.
 
     Returns
     -------

@@ -50,7 +50,7 @@ class ExactPath:
 
     @property
     def u(self) -> Array:
-        """The points, correctly rounded, shape (m, n + 1)."""
+        """Points, correctly rounded, shape (m, n + 1)."""
         return np.array([[float(value) for value in point] for point in self.points])
 
 

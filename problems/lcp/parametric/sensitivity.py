@@ -32,7 +32,7 @@ class Gradient:
     q : ndarray, shape (n,)
     A : ndarray, shape (n, n)
     one_sided : bool
-        Whether biactive indices exist, which the derivative holds at their bounds.
+        Whether biactive indices exist; they are held at bounds.
     """
 
     q: Array
@@ -113,7 +113,7 @@ class Sensitivity:
 
 
 def sensitivity(problem: MixedLCP, x: Array) -> Sensitivity:
-    """The derivatives of a solution by the data.
+    """Derivatives of a solution by the data.
 
     Parameters
     ----------

@@ -64,7 +64,7 @@ class Solutions:
 
     @property
     def points(self) -> Array:
-        """The solutions x, shape (number, n)."""
+        """Solutions x, shape (number, n)."""
         return np.array([one.x for one in self.certificates]).reshape(-1, self.problem.n)
 
 

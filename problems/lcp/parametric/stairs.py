@@ -55,7 +55,7 @@ class Stairs:
         return cls(moves_x, np.array([np.where(moves_x, *pair) for pair in values]), levels, corner_x, slope)
 
     def states(self, problem: MixedLCP, x: Array) -> State:
-        """The pieces of a solution x, exactly at its bounds."""
+        """Pieces of a solution x, exactly at its bounds."""
         bounded = np.where(x <= problem.lower, -1, np.where(x >= problem.upper, 1, 0))
         found: State = np.where(self.levels, np.sign(x), bounded).astype(np.int8)
         return found

@@ -123,7 +123,7 @@ class Trail:
         return Status.DIVERGED, f"The path ends on a ray on which x grows without bound and t {where}."
 
     def _goes_round(self, u: Array, unit: Array) -> bool:
-        """Whether the path left a kink of several pairs at this point in this direction before."""
+        """Whether the path left this kink of several pairs in this direction before."""
         size = ZERO_COMPONENT * (1.0 + largest(u))
         last = len(self.points) - 1
         several = (k for k, (_, pairs, _) in self.kinks.items() if len(pairs) > 1 and k < last)

@@ -69,7 +69,7 @@ class Dictionary:
 
     @property
     def table(self) -> Array:
-        """The table after all pivots."""
+        """Table after all pivots."""
         self._put_in()
         return self._table
 

@@ -123,10 +123,6 @@ class Certificate:
         ----------
         tolerance : float, default 1e-10
             For the relative residual.
-
-        Returns
-        -------
-        bool
         """
         return self.relative_residual <= tolerance and self.drowned <= DROWNED
 
@@ -164,7 +160,7 @@ def certify(problem: MixedLCP, x: Array, zero: float = 0.0) -> Certificate:
 
 @_quiet
 def certified(problem: MixedLCP, x: Array) -> Certificate:
-    """The certificate of a finite, immutable x, shape (n,)."""
+    """Certificate of a finite, immutable x, shape (n,)."""
     terms = row_terms(problem, x)
     relative = terms.w / (terms.size if least(terms.size) > 0.0 else np.where(terms.size > 0.0, terms.size, 1.0))
     # The shares of x in rows matter only where w is off.

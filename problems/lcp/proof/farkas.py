@@ -111,14 +111,11 @@ class FloatFarkas:
 def farkas(problem: MixedLCP) -> Farkas | None:
     """Prove that {x >= 0, A x + q >= 0}, or its counterpart with bounds, is empty.
 
+    The result is None if no multiplier passes the exact check.
+
     Parameters
     ----------
     problem : MixedLCP
-
-    Returns
-    -------
-    Farkas or None
-        None if no multiplier passes the exact check.
 
     References
     ----------
@@ -214,7 +211,7 @@ class _Scaled:
         return multiplier(self.problem, self.system.on_rows(np.array(y, dtype=object), self.problem.n).tolist())
 
     def _vertex(self, guess: Array) -> list[int] | None:
-        """The exact solution of the tight conditions on the guess's support."""
+        """Exact solution of the tight conditions on the guess's support."""
         support = np.flatnonzero(guess > MULTIPLIER_ZERO)
         tight = np.flatnonzero(np.asarray(self.A.T @ guess).ravel() >= -MULTIPLIER_ZERO)
         if max(support.size, tight.size // 4) > LARGEST_VERTEX:

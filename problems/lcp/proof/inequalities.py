@@ -112,7 +112,7 @@ class Conditions:
 
 
 def conditions_of(problem: MixedLCP | Inequalities) -> Conditions:
-    """The conditions on a multiplier."""
+    """Conditions on a multiplier."""
     A = sp.csr_array(problem.A.T) if problem.sparse else problem.A.T
     columns = integer_rows(A, np.zeros(A.shape[0]))
     constant = integer_rows(problem.q[None, :], np.zeros(1))[0]

@@ -34,7 +34,7 @@ class IntegerRow:
     shift: int
 
     def times(self, numerators: list[int], denominator: int) -> int:
-        """The row's value at numerators / denominator, times denominator."""
+        """Row value at numerators / denominator, times denominator."""
         total = self.constant * denominator
         for column, value in zip(self.columns, self.values):
             total += value * numerators[column]

@@ -42,7 +42,7 @@ class Node:
 
 @define(eq=False)
 class Branching:
-    """The tree of one problem.
+    """One problem's tree.
 
     `accepts` tells whether the caller accepts the face with these w_i = 0.
     """

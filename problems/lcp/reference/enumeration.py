@@ -60,7 +60,7 @@ class Enumeration:
 
     @property
     def points(self) -> Array:
-        """The solutions x in floats, shape (number, n)."""
+        """Solutions x in floats, shape (number, n)."""
         return np.array([solution.point for solution in self.solutions])
 
 
@@ -114,7 +114,7 @@ class Exhaustion:
 
     @property
     def point(self) -> Array | None:
-        """The point x in floats, shape (n,), or None."""
+        """Point x in floats, shape (n,), or None."""
         return None if self.x is None else np.array([_float(value) for value in self.x])
 
 

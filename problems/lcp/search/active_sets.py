@@ -33,7 +33,7 @@ DESCENT_ROUNDS = 200
 
 @define(eq=False)
 class ActiveSets:
-    """The active sets of one problem."""
+    """One problem's active sets."""
 
     search: Search
 

@@ -73,7 +73,7 @@ def taken(search: Search, found: Exhaustion) -> bool:
 
 @define(eq=False)
 class Exclusion:
-    """The tree of one problem."""
+    """One problem's tree."""
 
     search: Search
     tree: Branching | None = field(default=None, init=False)

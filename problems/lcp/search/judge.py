@@ -69,7 +69,7 @@ def exactly(search: Search, found: Solution) -> Solution:
 
 
 def units_of_its_own(problem: MixedLCP, roughly: bool) -> Scaled | None:
-    """The scaling for the search, or None.
+    """Scaling for the search, or None.
 
     `roughly`: keep the units, but for a common factor, if largest entries are similar.
     """

@@ -29,7 +29,7 @@ ENTRIES = 1 << 16
 
 @frozen(eq=False)
 class Answers:
-    """The answers to k problems.
+    """Answers to k problems.
 
     Attributes
     ----------
@@ -79,10 +79,6 @@ def solve_many(
         For each problem solved singly.
     executor : concurrent.futures.Executor, optional
         Runs batches.
-
-    Returns
-    -------
-    Answers
 
     Raises
     ------

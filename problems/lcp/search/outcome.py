@@ -178,7 +178,7 @@ class Solution:
 
     @property
     def objective(self) -> float:
-        """The program's objective at x, or NaN."""
+        """Program objective at x, or NaN."""
         if self.program is None or self.x is None:
             return math.nan
         return self.program.objective(self.x[: self.program.n])
@@ -211,10 +211,6 @@ class Solution:
 
     def sensitivity(self) -> Sensitivity:
         """The derivative of x by A and q as products; one-sided at biactive indices.
-
-        Returns
-        -------
-        Sensitivity
 
         Raises
         ------

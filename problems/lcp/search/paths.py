@@ -80,7 +80,7 @@ def light(path: Path) -> None:
 
 @define(eq=False)
 class Paths:
-    """The paths of one problem."""
+    """One problem's paths."""
 
     search: Search
     _begun: bool = False

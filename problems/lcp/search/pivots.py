@@ -49,7 +49,7 @@ def game(search: Search) -> bool:
 
 @frozen(eq=False)
 class Pivots:
-    """The almost complementary paths of one problem."""
+    """Almost complementary paths of one problem."""
 
     search: Search
 

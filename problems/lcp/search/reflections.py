@@ -119,7 +119,7 @@ def reflectable(search: Search) -> bool:
 
 @define(eq=False)
 class Reflections:
-    """The runs of one problem."""
+    """One problem's runs."""
 
     search: Search
     _runs: Iterator[tuple[int, list[State]]] | None = None

@@ -33,7 +33,7 @@ class Nearby:
 
 @frozen(eq=False)
 class Asked:
-    """The arguments of `solve`, in the units of the search."""
+    """The arguments of `solve`, in the search's units."""
 
     homotopy: str = "auto"
     x0: Array | None = None
@@ -76,12 +76,12 @@ class Search:
 
     @property
     def problem(self) -> MixedLCP:
-        """The problem in the units of the search."""
+        """The problem in the search's units."""
         return self.structure.problem
 
     @property
     def counts(self) -> Counts:
-        """Counts of all paths and active sets."""
+        """Counts of paths and active sets."""
         if self.finish is None:
             return self.traced
         return self.traced + self.finish.counts if self.paths else self.finish.counts

@@ -74,10 +74,6 @@ class Solver:
         **options
             For `solve`, if it is needed.
 
-        Returns
-        -------
-        Solution
-
         Raises
         ------
         ValueError

@@ -108,12 +108,9 @@ def solve(
     progress : bool
         One progress bar per path (needs tqdm).
     sparse : str
-        Factorisation of sparse active sets: "superlu", "cholmod" (needs cvxopt), or "auto". The message names it.
+        Factorisation of sparse active sets: "superlu", "cholmod" (cvxopt), "pardiso" (pypardiso), or "auto". The
+        message names it.
     {parts}
-
-    Returns
-    -------
-    Solution
 
     Raises
     ------

@@ -53,8 +53,7 @@ def trace_fold(file, **options):
 
 
 def test_solve_prints_the_solution(run, second):
-    out, err = run("solve", second)
-    assert err == ""
+    out, _ = run("solve", second)
     assert dict(line.split(maxsplit=1) for line in out.splitlines() if line[:1].isalpha())["outcome"] == "SOLVED"
     rows = [line.split() for line in out.splitlines() if line.startswith("  ") and line.strip()[:1] in "01"]
     assert [row[0] for row in rows] == ["0", "1"]
@@ -69,22 +68,16 @@ def test_solve_without_a_solution_exits_with_one(run, tmp_path):
 def test_solve_with_everything(run, second, tmp_path):
     np.save(tmp_path / "x0.npy", [2.0, 1.0])
     archive, picture = tmp_path / "run.h5", tmp_path / "path.png"
-    err = run(
-        "solve", second, "--homotopy", "kkt", "--x0", tmp_path / "x0.npy", "--archive", archive, "--plot", picture,
-        "--progress",
-    ).err  # fmt: skip
-    assert "lam =" in err
+    given = "--homotopy", "kkt", "--x0", tmp_path / "x0.npy", "--archive", archive, "--plot", picture
+    assert "lam =" in run("solve", second, *given, "--progress").err
     assert picture.read_bytes().startswith(b"\x89PNG")
     with open_archive(archive) as stored:
         np.testing.assert_allclose(stored.path(0).steps[0].y[:2], [2, 1])
 
 
 def test_solve_traces_a_path_for_an_archive_and_for_a_picture(run, second, tmp_path):
-    def paths(*options):
-        return json.loads(run("solve", second, "--json", *options).out)["paths"]
-
-    assert paths() == 0
-    assert paths("--archive", tmp_path / "path.h5") == paths("--plot", tmp_path / "path.png") == 1
+    asked = (), ("--archive", tmp_path / "path.h5"), ("--plot", tmp_path / "path.png")
+    assert [json.loads(run("solve", second, "--json", *one).out)["paths"] for one in asked] == [0, 1, 1]
 
 
 # -- classify and paper ---------------------------------------------------------------------------------------
@@ -93,8 +86,7 @@ def test_solve_traces_a_path_for_an_archive_and_for_a_picture(run, second, tmp_p
 def test_classify_takes_a_problem_or_a_matrix_alone(run, second, tmp_path):
     np.savetxt(tmp_path / "a.txt", [[1.0, 0.0], [0.0, 1.0]])
     for file, answer in ((second, " no "), (tmp_path / "a.txt", " yes ")):
-        out = run("classify", file).out
-        lines = {line[:40].split("  ")[0].strip(): line for line in out.splitlines()}
+        lines = {line[:40].split("  ")[0].strip(): line for line in run("classify", file).out.splitlines()}
         assert " yes " in lines["PSD"]
         assert answer in lines["P"]
 
@@ -106,8 +98,7 @@ def test_classify_takes_a_problem_or_a_matrix_alone(run, second, tmp_path):
     "options", [(), ("--against", "arclength"), ("--diagram",), ("--diagram", "--components", "0")]
 )
 def test_plot_writes_a_picture(run, archive, tmp_path, options):
-    out = run("plot", archive, "--output", tmp_path / "p.png", *options).out
-    assert out.strip() == str(tmp_path / "p.png")
+    assert run("plot", archive, "--output", tmp_path / "p.png", *options).out.strip() == str(tmp_path / "p.png")
     assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -7,6 +7,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from continuation import (
+    CONSERVATIVE,
     EvaluationError,
     Kind,
     KinkPoint,
@@ -169,8 +170,20 @@ def test_the_events_of_the_homotopy_come_too():
             {"target": None, "events": [TargetValue(600.0, component=0)], "direction": -1},
         ),
         (scalar(lambda y, lam: y - 1.0, lambda y, lam: (1.0, 0.0), start=(1.0, 0.0)), {"events": [TurningPoint(0)]}),
+        # lam = 1/2 around a circle, from equations that are mixed by a matrix of condition 1e4.
+        (
+            from_functions(
+                lambda y, lam: (
+                    np.array([[1.0, 2.0], [1.0, 2.001]])
+                    @ np.stack([y[0] ** 2 + y[1] ** 2 - 1.0, (lam - 0.5) * (2.0 + y[0])])
+                ),
+                start=([1.0, 0.0], 0.5),
+                target=None,
+            ),
+            {"preset": CONSERVATIVE},
+        ),
     ],
-    ids=["the parameter dies out", "a component stands still"],
+    ids=["the parameter dies out", "a component stands still", "the parameter stands still in mixed equations"],
 )
 def test_no_false_turning_point(homotopy, options):
     assert trace(homotopy, **options).turning_points == []

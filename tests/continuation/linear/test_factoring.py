@@ -1,8 +1,9 @@
-"""The door to sparse factorisations: what is chosen, with a Cholesky of the test's own; CHOLMOD where it is there."""
+"""The door to sparse factorisations: what is chosen, with a Cholesky of the test's own; packages that are there."""
 
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 from continuation.linear import factor_bordered
 from continuation.linear.factoring import Factoring, check_method
@@ -16,10 +17,10 @@ def dense(monkeypatch):
     """Cholesky's method on the whole square in place of CHOLMOD, from order 10 on."""
 
     def factor(matrix):
-        found = factor_cholesky(np.asfortranarray(matrix.toarray()))
-        return found and found.solve
+        return getattr(factor_cholesky(np.asfortranarray(matrix.toarray())), "solve", None)
 
-    for name, value in (("factor_cholmod", factor), ("CHOLMOD_FROM", 10), ("find_spec", lambda name: name)):
+    packages = {"cholmod": ("cvxopt", 10)}
+    for name, value in (("factor_cholmod", factor), ("PACKAGES", packages), ("find_spec", lambda name: name)):
         monkeypatch.setattr(FACTORING + name, value)
 
 
@@ -74,9 +75,10 @@ def test_what_is_singular_has_no_factors(dense):
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("umfpack", r"^sparse: expected one of auto, superlu, cholmod, found 'umfpack'$"),
+        ("umfpack", r"^sparse: expected one of auto, superlu, pardiso, cholmod, found 'umfpack'$"),
         (3, "found int"),
         ("cholmod", "sparse='cholmod' needs cvxopt: pip install 'pseudoarclength"),
+        ("pardiso", "sparse='pardiso' needs pypardiso: pip install 'pseudoarclength"),
     ],
 )
 def test_a_method_is_asked_for_by_a_name_and_must_be_installed(monkeypatch, name, words):
@@ -92,15 +94,27 @@ def method(factoring, matrix):
     return [*factoring.used][-1]
 
 
-def test_cholmod_solves_to_round_off():
-    pytest.importorskip("cvxopt")
-    A, x = laplacian(40), np.random.default_rng(0).normal(size=1600)
-    factoring, b = Factoring(), A @ x
-    factor = factoring.factor(A)
-    assert np.abs(A @ factor.solve(b) - b).max() <= 1e-14 * np.abs(x).max()
+@pytest.mark.parametrize(
+    ("name", "package", "indefinite"), [("cholmod", "cvxopt", "SuperLU"), ("pardiso", "pypardiso", "PARDISO")]
+)
+def test_packages_solve_to_round_off(name, package, indefinite):
+    """Their factors live as long as what solves with them."""
+    pytest.importorskip(package)
+    A, shifted, x = laplacian(40), laplacian(40, 1.5), np.random.default_rng(0).normal(size=1600)
+    solve, b = Factoring(name).factor(A).solve, A @ x
+    assert np.abs(A @ solve(b) - b).max() <= 1e-14 * np.abs(x).max()
     np.testing.assert_array_equal(b, A @ x)
-    assert (factor.sign, factoring.used) == (1, {"CHOLMOD": 1})
-    assert [method(Factoring("cholmod"), matrix) for matrix in (A, laplacian(40, 1.5))] == ["CHOLMOD", "SuperLU"]
+    assert [method(Factoring(name), matrix) for matrix in (A, shifted)] == [name.upper(), indefinite]
+    assert Factoring(name).factor(shifted).sign == np.linalg.slogdet(shifted.toarray())[0]
+
+
+@pytest.mark.parametrize("weak_pivots", [True, False])
+def test_a_perforated_grid_has_little_fill(monkeypatch, weak_pivots):
+    found = []
+    monkeypatch.setattr(FACTORING + "factor_superlu", lambda *given, **how: found.append(splu(*given, **how)))
+    inside = np.random.default_rng(0).random(3600) < 0.9
+    Factoring("superlu", weak_pivots).factor(laplacian(60)[inside][:, inside])
+    assert found[0].nnz < 40 * inside.sum()
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.5])

@@ -20,10 +20,10 @@ def random_data(kind, n, seed):
     return (P + P.T) / 2, rng.standard_normal(n), -np.ones(n), np.ones(n)
 
 
-def test_a_diagonal_matrix_needs_one_step_in_any_units():
-    for unit in (1e-6, 1.0, 1e6):
-        problem = lcp.MixedLCP(np.diag([2.0, 3.0, 5.0]) / unit, [-20.0, 3.0, 50.0], -2 * unit, 4 * unit)
-        np.testing.assert_array_equal(projected_state(problem), [UPPER, BETWEEN, LOWER])
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_a_diagonal_matrix_needs_one_step_in_any_units(unit):
+    problem = lcp.MixedLCP(np.diag([2.0, 3.0, 5.0]) / unit, [-20.0, 3.0, 50.0], -2 * unit, 4 * unit)
+    np.testing.assert_array_equal(projected_state(problem), [UPPER, BETWEEN, LOWER])
 
 
 @pytest.mark.parametrize(("kind", "counted"), [("rank n/2", 10), ("definite", 8), ("condition 1e6", 6)])
