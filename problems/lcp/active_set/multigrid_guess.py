@@ -1,7 +1,7 @@
 """A guess of the active set of a diffusion-like problem by algebraic multigrid.
 
 Active sets move the contact boundary by about one grid line a step. From the coarsest of the problems P'AP, P'q on, the
-point is corrected on its face by GMRES, preconditioned by a V-cycle on the faces of the coarser ones.
+point is corrected on its face by flexible GMRES, preconditioned by a V-cycle on the faces of the coarser ones.
 
 References
 ----------
@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 from attrs import define
 from numpy.typing import NDArray
-from scipy.sparse.linalg import LinearOperator, gmres
+from scipy.sparse.linalg import LinearOperator, gcrotmk
 
 from continuation.arrays import EPS, Array, Mask, Matrix, finite
 from continuation.counts import Counts
@@ -69,6 +69,7 @@ class Level:
     """
 
     problem: MixedLCP
+    diagonal: Array
     x: Array
     state: State
     P: Matrix
@@ -80,8 +81,8 @@ class Level:
         """The state after projected Jacobi sweeps."""
         problem = self.problem
         for _ in range(SWEEPS):
-            self.x = problem.clipped(self.x - DAMPING * problem.w(self.x) / problem.A.diagonal())
-        return _states(problem, self.x)
+            self.x = problem.clipped(self.x - DAMPING * problem.w(self.x) / self.diagonal)
+        return _states(problem, self.x, self.diagonal)
 
     def corrected(self) -> None:
         """Improve the point on its face."""
@@ -89,7 +90,7 @@ class Level:
         A = LinearOperator((n, n), lambda e: np.where(free, self.problem.A @ e, 0.0), dtype=float)
         M = LinearOperator((n, n), lambda r: self.cycle(free, r), dtype=float)
         gap = np.where(free, -self.problem.w(self.x), 0.0)
-        x = self.x + gmres(A, gap, rtol=EPS, restart=STEPS, maxiter=1, M=M)[0]
+        x = self.x + gcrotmk(A, gap, rtol=EPS, m=STEPS, k=0, maxiter=1, M=M)[0]
         self.x = self.problem.clipped(x) if finite(x) else self.x
 
     def cycle(self, free: Mask, r: Array) -> Array:
@@ -98,7 +99,7 @@ class Level:
             e = np.zeros(len(r))
             e[self.face.active] = self.face.inverse(r[self.face.active])
             return np.where(free, e, 0.0)
-        A, step = self.problem.A, np.where(free, DAMPING / self.problem.A.diagonal(), 0.0)
+        A, step = self.problem.A, np.where(free, DAMPING / self.diagonal, 0.0)
         e = step * r
         for _ in range(SWEEPS - 1):
             e += step * (r - A @ e)
@@ -113,7 +114,8 @@ class Level:
 
 @without_warnings(all="ignore")
 def _solved(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -> Level:
-    level = Level(problem, problem.near_zero, _states(problem, problem.near_zero), *_interpolation(problem.A, d))
+    diagonal, x = problem.A.diagonal(), problem.near_zero
+    level = Level(problem, diagonal, x, _states(problem, x, diagonal), *_interpolation(problem.A, d))
     P, kept = level.P, level.kept
     if problem.n <= COARSEST_ORDER:
         faces = Faces(Structure(problem), factoring)
@@ -135,10 +137,10 @@ def _solved(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -
     return level
 
 
-def _states(problem: MixedLCP, x: Array) -> State:
+def _states(problem: MixedLCP, x: Array, diagonal: Array) -> State:
     """The state at x; points with w = 0 count as between bounds."""
     w = problem.w(x)
-    return np.where(w == 0.0, BETWEEN, problem.states(x, w / problem.A.diagonal()))
+    return np.where(w == 0.0, BETWEEN, problem.states(x, w / diagonal))
 
 
 def _smooth(A: Matrix) -> Array:
