@@ -90,7 +90,7 @@ class Level:
         A = LinearOperator((n, n), lambda e: np.where(free, self.problem.A @ e, 0.0), dtype=float)
         M = LinearOperator((n, n), lambda r: self.cycle(free, r), dtype=float)
         gap = np.where(free, -self.problem.w(self.x), 0.0)
-        x = self.x + gcrotmk(A, gap, rtol=EPS, m=STEPS, k=0, maxiter=1, M=M)[0]
+        x = self.x + gcrotmk(A, gap, rtol=EPS, m=STEPS, k=0, maxiter=1, M=M)[0] if finite(gap) else gap
         self.x = self.problem.clipped(x) if finite(x) else self.x
 
     def cycle(self, free: Mask, r: Array) -> Array:
@@ -123,8 +123,9 @@ def _solved(problem: MixedLCP, d: Array, factoring: Factoring, counts: Counts) -
         counts.factorizations += 1
         level.x, level.state, level.face = problem.clipped(found.x), found.state, faces.face(found.state)
         return level
-    if len(kept) <= LEAST_COARSENING * problem.n:
-        A, q = sp.csr_array(P.T @ problem.A @ P), P.T @ problem.q
+    q = P.T @ problem.q
+    if len(kept) <= LEAST_COARSENING * problem.n and finite(q):
+        A = sp.csr_array(P.T @ problem.A @ P)
         coarse = LCP(A, q) if problem.standard else MixedLCP(A, q, problem.lower[kept], problem.upper[kept])
         level.coarser = _solved(coarse, d[kept], factoring, counts)
         level.x = problem.clipped(P @ level.coarser.x)
