@@ -75,7 +75,8 @@ def scan_events(
         resolution = getattr(event, "resolution", None)
         if resolution is not None:
             if noise is None:
-                noise = solver.noise_by_component(arc.a) + arc.length * (solver.tangent_noise(arc.a) + solver.tangent_noise(arc.b))
+                of_tangents = solver.tangent_noise(arc.a) + solver.tangent_noise(arc.b)
+                noise = solver.noise_by_component(arc.a) + arc.length * of_tangents
             # Round-off at both ends is no crossing.
             if max(abs(first), abs(g)) <= resolution(noise, arc.length):
                 continue

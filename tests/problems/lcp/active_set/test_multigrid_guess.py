@@ -55,11 +55,11 @@ def perforated(m):
 
 @pytest.mark.parametrize(
     ("make", "m"),
-    [(ROWS["torsion"], 60), (ROWS["put"], 100), (convected, 100), (perforated, 60)],
+    [(ROWS["torsion"], 60), (ROWS["put"], 100), (convected, 60), (perforated, 100)],
 )
 def test_bounds_above_and_weighted_rows_have_a_cascade_too(make, m, orders):
     solved(make(m))
-    assert sum(order > 200 for order in orders) <= 2
+    assert sum(order > 200 for order in orders) == 1
 
 
 def test_the_cascade_does_not_depend_on_which_side_the_obstacle_is(orders):
