@@ -122,9 +122,7 @@ def test_a_bordered_system_is_the_same_by_any_method(dense, shift):
 @pytest.mark.parametrize("weak_pivots", [True, False])
 def test_superlu_exchanges_rows_where_it_is_asked_to_and_fills_a_perforated_grid_little(monkeypatch, weak_pivots):
     found = []
-    monkeypatch.setattr(
-        FACTORING + "factor_superlu", lambda A, **how: found.append(splu(A, **how)) or found[-1]
-    )
+    monkeypatch.setattr(FACTORING + "factor_superlu", lambda A, **how: found.append(splu(A, **how)) or found[-1])
     weak = sp.csc_array(np.array([[1e-2, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 5.0]]))
     factor = Factoring(weak_pivots=weak_pivots).factor(weak)
     assert factor.sign == np.sign(np.linalg.det(weak.toarray()))
