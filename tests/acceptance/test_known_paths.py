@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from attrs import evolve
 
-from continuation import DEFAULT, FAST, Status, TurningPoint
+from continuation import DEFAULT, FAST, Status, TurningPoint, trace
 from continuation import arclength as length
 from continuation.controllers import Bounds
 from problems.bifurcation import Aircraft, Circle, Cusp, ExponentialCosine
 from problems.nonlinear import brown, fixed_point
 from tests.truth import aircraft, exponential_cosine
 
-from ..util import path_of
+from ..util import by_preset, path_of
 
 # n: x1 at the end, turning points of lam.
 COSINES = {
@@ -88,3 +88,8 @@ def test_turning_points_ends_and_lengths(preset, row):
     np.testing.assert_allclose(found, turns, rtol=rtol, atol=atol)
     np.testing.assert_allclose(path.endpoint.u[: len(end)], end, rtol=0.0, atol=atol)
     assert along is None or length(homotopy, path) == along
+
+
+@by_preset(FAST, DEFAULT)
+def test_the_published_digits_of_a_fold(preset):
+    assert trace(Cusp(1.0), preset=preset).turning_points[0].lam == pytest.approx(0.3849001794597505, abs=1e-14)

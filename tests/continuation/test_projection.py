@@ -15,5 +15,6 @@ def test_newton_steps_lead_to_where_increments_halve():
     evaluator = Evaluator(from_functions(lambda y, lam: y**3 - 1.0 - lam, start=([1.0], 0.0)), Counts())
     border, start = np.array([0.0, 1.0]), np.array([1.0, 0.0])
     near = linearize(evaluator, start, np.ones(2), border)
-    found, _ = PathSolver(evaluator, Tolerance()).project(near, 3.0 * start, border)
+    found, anchor = PathSolver(evaluator, Tolerance()).project(near, 3.0 * start, border)
     assert found == pytest.approx(start, abs=1e-15)
+    assert 1.0 < anchor.u[0] < 2.0

@@ -53,8 +53,11 @@ def trace_fold(file, **options):
 
 
 def test_solve_prints_the_solution(run, second):
-    out, _ = run("solve", second)
-    assert dict(line.split(maxsplit=1) for line in out.splitlines() if line[:1].isalpha())["outcome"] == "SOLVED"
+    out, err = run("solve", second)
+    assert (
+        err,
+        dict(line.split(maxsplit=1) for line in out.splitlines() if line[:1].isalpha())["outcome"],
+    ) == ("", "SOLVED")
     rows = [line.split() for line in out.splitlines() if line.startswith("  ") and line.strip()[:1] in "01"]
     assert [row[0] for row in rows] == ["0", "1"]
     np.testing.assert_allclose([float(row[1]) for row in rows], [0.5, 0], atol=1e-10)

@@ -25,16 +25,15 @@ def orders(monkeypatch):
 def solved(problem, **options):
     """The solution, by active sets alone, to round-off."""
     found = lcp.solve(problem, **options)
-    assert found.solved
+    assert (found.solved, "before any path" in found.message) == (True, True)
     assert found.certificate.relative_residual < 1e-14
-    assert "before any path" in found.message
     return found
 
 
 @pytest.mark.parametrize("m", [31, 63])
 def test_a_membrane_takes_one_factorisation_of_the_finest_level(m, orders):
     found = solved(OBSTACLE(m), sparse="superlu")
-    assert found.counts.factorizations == len(orders) <= 8
+    assert found.counts.factorizations == len(orders) <= 7
     assert sum(order > 200 for order in orders) == 1
     assert f"Sparse factorisations: {len(orders)} by SuperLU" in found.message
 
@@ -64,8 +63,7 @@ def test_bounds_above_and_weighted_rows_have_a_cascade_too(make, m, orders):
 
 def test_the_cascade_does_not_depend_on_which_side_the_obstacle_is(orders):
     """x >= l, x <= -l with signs changed, and x - l >= 0 have the same faces."""
-    problem = OBSTACLE(31)
-    l = np.sin(np.arange(problem.n))
+    problem, l = OBSTACLE(31), np.sin(np.arange(31**2))
     below = MixedLCP(problem.A, problem.q - problem.A @ l, l, np.full(problem.n, np.inf))
     above = MixedLCP(problem.A, problem.A @ l - problem.q, np.full(problem.n, -np.inf), -l)
     x = solved(problem).x
