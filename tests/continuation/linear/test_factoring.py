@@ -107,7 +107,7 @@ def test_packages_solve_to_round_off(name, package, indefinite):
     assert np.abs(A @ solve(b) - b).max() <= 1e-14 * np.abs(x).max()
     np.testing.assert_array_equal(b, A @ x)
     assert [method(Factoring(name), matrix) for matrix in (A, shifted)] == [name.upper(), indefinite]
-    assert [Factoring(name).factor(matrix).sign for matrix in (A, shifted)] == [
+    assert [Factoring(name).factor(M).sign for M in (A, shifted)] == [
         1,
         np.linalg.slogdet(shifted.toarray())[0],
     ]
